@@ -130,7 +130,7 @@ impl Drop for ScratchFolder {
     }
 }
 
-/// Runs the benchmarks in this process and prints their samples for the parent process.
+/// Runs the benchmarks in this process, and prints their samples for the parent process.
 fn measure_in_process(cases: &[&BenchCase], bench: &BenchContext) -> Result<(), Failure> {
     for case in cases {
         let samples = (case.measure)(bench).map_err(|error| Failure::failed(error.to_string()))?;
@@ -139,7 +139,7 @@ fn measure_in_process(cases: &[&BenchCase], bench: &BenchContext) -> Result<(), 
     Ok(())
 }
 
-/// Runs a benchmark in child processes, because peak memory can only be measured for a whole process.
+/// Runs a benchmark in child processes, because peak memory can be measured only for a whole process.
 fn measure(case: &BenchCase, options: &Options, scratch: &Path) -> Result<Samples, Failure> {
     let repetitions = options.repetitions();
     let (processes, each) = if case.needs_new_process { (repetitions, 1) } else { (1, repetitions) };
@@ -185,7 +185,7 @@ fn report_header(calibration: f64, repetitions: usize, scenario: Option<&str>) -
     let often =
         if repetitions == 1 { "one repetition".to_owned() } else { format!("medians of {repetitions}") };
     format!(
-        "novamind {} · {} threads · {often} · calibration loop {calibration:.3} s{scenario}\n\n{:<54} {:>10} {:>9} {:>9}  {:<14} {:>9}\n",
+        "novamind {} · {} threads · {often} · calibration loop {calibration:.3} s{scenario}\n\n{:<66} {:>10} {:>9} {:>9}  {:<14} {:>9}\n",
         env!("CARGO_PKG_VERSION"),
         thread_count(),
         "",
@@ -205,7 +205,7 @@ fn format_row(row: &BenchRow, calibration: f64) -> String {
     let ratio = calibration_ratio(value, figure.unit, calibration)
         .map_or_else(String::new, |ratio| format!("{ratio:.3e}"));
     let text = format!(
-        "{:<54} {:>10} {:>9} {:>9}  {:<14} {ratio:>9}",
+        "{:<66} {:>10} {:>9} {:>9}  {:<14} {ratio:>9}",
         figure.name,
         written(value),
         written(figure.target),

@@ -21,7 +21,7 @@ use crate::record::folder::query_library::QueryLibrary;
 use crate::worker::preferences::Preferences;
 use crate::world::MECHANICS;
 
-/// Policy and seed of the run that every build must reproduce.
+/// Policy and seed of the known run, which every build must reproduce.
 const KNOWN_RUN: (&str, u64) = ("P1a", 42);
 /// A day of the known run, and the state hash at the end of that day.
 type KnownHash = (u32, &'static str);
@@ -145,7 +145,8 @@ fn describe_terminal() -> Result<String, String> {
     Ok(words.join(", "))
 }
 
-/// Lists the environment variables that select colors. On a terminal, also shows samples of 16 and of 16 million colors.
+/// Lists the environment variables that select colors. On a terminal, also shows color samples, first in 16
+/// colors and then in 16 million colors.
 fn describe_colors() -> String {
     let depth = environment_variable("COLORTERM")
         .map_or("COLORTERM is not set".to_owned(), |name| format!("COLORTERM={name}"));

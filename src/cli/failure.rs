@@ -86,8 +86,8 @@ impl From<RunError> for Failure {
     }
 }
 
-/// Returns whether an error of this kind occurs only while writing. The exit code is then 1, not the code for an
-/// unreadable file.
+/// Returns whether an error of this kind occurs only while writing. For these errors, the exit code is 1, not
+/// the code for an unreadable file.
 fn is_write_failure(kind: ErrorKind) -> bool {
     matches!(
         kind,

@@ -23,6 +23,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let library = QueryLibrary::load(&context.configuration);
     let own = OwnCommands::load(&context.configuration, &keys, &library);
     print(&format!("{}{}", manual::to_text(&keys), own.to_text()))?;
-    // The list is printed although some commands are invalid, as the console starts with the others.
+    // The list is printed even if some commands are invalid, because the console also starts with the valid
+    // ones.
     if own.problems.is_empty() { Ok(()) } else { Err(Failure::unreadable(own.problems.join("\n"))) }
 }

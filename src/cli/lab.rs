@@ -177,7 +177,7 @@ fn run_golden(golden: &GoldenOptions, context: &Context) -> Result<(), Failure> 
     print_summary(&verdicts, &unplayed, &golden.seeds)
 }
 
-/// Returns the scenario of the comparison, and prints the scenario if it was chosen by the option or the reference.
+/// Returns the scenario of the comparison. Prints the scenario if the option or the reference determines it.
 fn golden_scenario(golden: &GoldenOptions, context: &Context) -> Result<Option<String>, Failure> {
     let scenario = match &golden.scenario {
         Some(name) => Some(name.clone()),
@@ -253,8 +253,8 @@ fn checkpoint_figures(
     all
 }
 
-/// Reruns suspicious figures on the subsequent seeds. Returns (figure, first median, second median) for each figure
-/// that deviates in the same direction again.
+/// Compares suspicious figures again on the subsequent seeds. Returns (figure, first median, second median)
+/// for each figure that deviates in the same direction again.
 fn confirm_bias(
     comparison: &GoldenComparison,
     policy: &Policy,

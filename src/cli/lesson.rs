@@ -234,7 +234,8 @@ fn describe_check(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> 
     text
 }
 
-/// Formats the values that the plays reached for a goal, in the order of the plays.
+/// Formats the values of a goal in the plays, in the order of the plays. Values that do not reach the goal
+/// are in parentheses.
 fn goal_values(plays: &[PlayResult], at: usize) -> String {
     let written = plays.iter().filter_map(|play| play.goals.get(at)).map(|goal| {
         let value = goal.value.map_or_else(|| "-".to_owned(), compact_number);

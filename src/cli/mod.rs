@@ -232,7 +232,7 @@ impl Context {
         }
     }
 
-    /// Returns the named folders of runs, or this machine's folder of runs if `named` is empty.
+    /// Returns the folders of runs in `named`, or this machine's folder of runs if `named` is empty.
     ///
     /// # Errors
     /// A named folder does not exist, or [`Context::runs_folder`] fails.
@@ -282,10 +282,10 @@ impl Context {
         )))
     }
 
-    /// Checks access as [`Context::check_view_allowed`] does, and records that the run was read.
+    /// Checks access like [`Context::check_view_allowed`], and records that the run was read.
     ///
     /// # Errors
-    /// As [`Context::check_view_allowed`] and [`record_external_read`].
+    /// Same as [`Context::check_view_allowed`] and [`record_external_read`].
     pub fn authorize_view(&self, folder: &Path, command: &str, detail: &str) -> Result<(), Failure> {
         self.check_view_allowed(folder)?;
         Ok(record_external_read(folder, command, detail)?)
@@ -322,7 +322,7 @@ impl Context {
     /// Returns the folder of cached experiment results, a hidden folder in the folder of runs.
     ///
     /// # Errors
-    /// As [`Context::runs_folder`].
+    /// Same as [`Context::runs_folder`].
     pub fn laboratory_folder(&self) -> Result<PathBuf, Failure> {
         Ok(self.runs_root()?.join(".lab"))
     }
@@ -352,14 +352,15 @@ fn study_in_current_folder() -> Option<PathBuf> {
     Path::new(STUDY_FILE).is_file().then(|| PathBuf::from("."))
 }
 
-/// Ignores the signal that a write beyond the file size limit raises. The write then fails with an error instead of
-/// ending the program.
+/// Ignores the signal that is sent if a write exceeds the file size limit. The write then fails with an error
+/// instead of ending the program.
 fn ignore_file_size_signal() {
     #[cfg(unix)]
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
 }
 
-/// If no study is given, passes `--code` to the tool that an agent calls, because some tools have a `code` argument.
+/// Passes `--code` to the tool that an agent calls if no study is given, because some tools have a `code`
+/// argument.
 #[cfg(feature = "server")]
 fn pass_code_to_tool(mut arguments: Arguments) -> Arguments {
     let text = arguments.code.clone().filter(|code| std::env::var("NOVAMIND_CODE").as_ref() != Ok(code));

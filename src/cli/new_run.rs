@@ -68,7 +68,7 @@ impl NewRunOptions {
         self.scenario.is_some()
     }
 
-    /// Returns the options with `label` as the player's label if no label was given.
+    /// Returns the options, with `label` as the player's label unless a label was given.
     #[cfg(feature = "server")]
     pub fn with_participant(&self, label: &str) -> NewRunOptions {
         NewRunOptions {
@@ -77,7 +77,8 @@ impl NewRunOptions {
         }
     }
 
-    /// Returns the settings of a run that a program plays, and a remark if days, cash or scenario make the run a sandbox run.
+    /// Returns the settings of a run that a program plays. Also returns a remark if days, cash or scenario
+    /// make the run a sandbox run.
     ///
     /// # Errors
     /// [`NewRunOptions::new_run`] fails, or the terms of a baseline run cannot be read.

@@ -1,5 +1,6 @@
-//! Writes output files of commands completely or leaves them unchanged. Devices and pipes are written to and never
-//! replaced. An existing file with another signature is never replaced, because it may be a run, a policy or a study.
+//! Writes output files of commands completely or leaves them unchanged. Devices and pipes are written to but
+//! never replaced. An existing file with a different signature is never replaced, because it may be a run, a
+//! policy or a study.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
@@ -22,7 +23,7 @@ pub fn write_text(place: &Path, text: &str) -> Result<(), Failure> {
     write_file(place, None, |out| out.write_all(text.as_bytes()))
 }
 
-/// Writes an output file. `safe` is appended to the error message and names the data that is not lost.
+/// Writes an output file. `safe` describes the data that is not lost, and is appended to the error message.
 ///
 /// # Errors
 /// The file cannot be written. An existing file stays unchanged.

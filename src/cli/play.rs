@@ -193,7 +193,7 @@ fn play_plain(options: &Options, context: &Context) -> Result<(), Failure> {
     let code =
         crate::plain::play(open_run(options, context)?, QueryLibrary::load(&context.configuration), style)
             .map_err(|error| match error.kind() {
-                // The reader of the output closed the pipe, as `head` does.
+                // The reader of the output, for example `head`, closed the pipe.
                 ErrorKind::BrokenPipe => Failure::code_only(1),
                 _ => Failure::failed(error.to_string()),
             })?;
@@ -229,7 +229,7 @@ fn select_theme(
 ) -> Result<Theme, Failure> {
     let asked = options.theme.as_deref().or(no_colour.then_some("mono"));
     let remembered = chosen.theme.as_deref().filter(|_| asked.is_none());
-    // The console also opens if the last chosen theme no longer exists.
+    // If the last chosen theme no longer exists, the console opens with another theme.
     if let Some(theme) = remembered.and_then(|name| themes::find_theme(name, configuration).ok()) {
         return Ok(theme);
     }

@@ -69,7 +69,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Returns the statement to run. A single word is never a statement, so it selects a query from the library.
+/// Returns the statement to run. A single word is never a statement, so it is treated as the name of a query
+/// in the library.
 fn resolve_statement(given: &str, context: &Context) -> Result<String, Failure> {
     let is_name =
         given.contains('-') && given.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
@@ -86,7 +87,8 @@ fn resolve_statement(given: &str, context: &Context) -> Result<String, Failure> 
     }
 }
 
-/// Runs a query that may read the hidden tables. Opens the run for writing because the inspection is recorded.
+/// Runs a query that may read the hidden tables. Opens the run for writing, because the inspection is
+/// recorded.
 fn query_hidden_tables(folder: &Path, options: &Options, context: &Context) -> Result<QueryResult, Failure> {
     context.check_view_allowed(folder)?;
     let mut session = Session::open_sealed(folder, Access::Write, true, context.seal_key()?)?;
@@ -97,8 +99,8 @@ fn query_hidden_tables(folder: &Path, options: &Options, context: &Context) -> R
     Ok(rows)
 }
 
-/// Queries the database of the run. Completes the database on disk first if necessary. If the run is being played or the
-/// folder is read-only, the database is built in memory from the trajectory.
+/// Queries the database of the run. If necessary, first completes the database on disk. If the run is being
+/// played or the folder is read-only, builds the database in memory from the trajectory instead.
 fn query_run(folder: &Path, sql: &str, key: &SealKey) -> Result<QueryResult, Failure> {
     if let Some(rows) = query_database_file(folder, sql, key)? {
         return Ok(rows);
@@ -126,7 +128,7 @@ fn query_run(folder: &Path, sql: &str, key: &SealKey) -> Result<QueryResult, Fai
 
 /// Queries the database file. Returns `None` if the file is incomplete.
 fn query_database_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<QueryResult>, Failure> {
-    // The trajectory and the database are large files, so two threads read them.
+    // The trajectory and the database are large files, so each is read by its own thread.
     let (trajectory, opened) = std::thread::scope(|scope| {
         let opened = scope.spawn(|| open_database_file(folder, key));
         (Trajectory::read(&folder.join("trajectory.jsonl")), opened.join())

@@ -106,7 +106,8 @@ fn containing_run_folder(path: &Path) -> Option<PathBuf> {
     Some(path).filter(is_run).or_else(|| path.parent().filter(is_run)).map(Path::to_owned)
 }
 
-/// Records in the run that its data was read.
+/// Records in the run that its data was read. Also checks that the data may be read, unless the run is only
+/// verified.
 fn record_view(recorded: &RecordSource, detail: &str, context: &Context) -> Result<(), Failure> {
     let folder = match recorded {
         RecordSource::Run(id) => find_run_to_read(&context.runs_folder()?, id)?,
@@ -122,7 +123,8 @@ fn record_view(recorded: &RecordSource, detail: &str, context: &Context) -> Resu
     context.authorize_view(&folder, "replay", detail)
 }
 
-/// Returns the record at a path if the path exists, otherwise the record of the run with this id.
+/// Returns the record at the path `name` if the path exists, otherwise the record of the run with the id
+/// `name`.
 fn find_record(name: &str) -> RecordSource {
     let path = PathBuf::from(name);
     if path.exists() { RecordSource::File(path) } else { RecordSource::Run(name.to_owned()) }

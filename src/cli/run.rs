@@ -137,7 +137,7 @@ fn play_seeds(
                 let mut collector =
                     if wanted { MetricsCollector::new(days.clone()) } else { MetricsCollector::disabled() };
                 let outcome = play_policy(&policy, &run_spec, &configuration, &mut collector);
-                // The send fails only if the receiver was dropped because another seed failed.
+                // Sending fails only if the receiver was dropped because another seed failed.
                 let _ = done.send((seed, outcome, collector));
             });
         });

@@ -35,7 +35,7 @@ impl RunSelection {
     /// Opens or creates the run.
     ///
     /// # Errors
-    /// The run does not exist, is in use, or belongs to a study; or the new run cannot be created.
+    /// The run does not exist, is in use or belongs to a study, or the new run cannot be created.
     pub fn open(&self, context: &Context) -> Result<Session, Failure> {
         let context = &context.with_voice(self.voice.as_deref())?;
         if let Some(id) = &self.run {

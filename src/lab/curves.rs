@@ -13,7 +13,7 @@ const PRICE_STEPS: u32 = 100;
 /// Number of sampled prices in a table row.
 const PRICES_PER_ROW: usize = 5;
 
-/// Returns the participation curve of a customer with the mean traits of a group.
+/// Returns the participation curve of a customer who has the mean traits of a group.
 fn mean_customer(group_params: &GroupParams, params: &Params) -> Curve {
     let bounds = &params.customer_generation;
     Curve {

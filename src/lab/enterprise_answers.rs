@@ -18,7 +18,8 @@ pub struct EnterpriseRule {
     /// Price factor, which depends on the number of the policy's turns in the thread.
     #[serde(default)]
     pub factor: PriceFactor,
-    /// Number of the policy's turns in a thread after which the policy rejects the thread; `None` to never reject.
+    /// Number of the policy's turns in a thread after which the policy rejects the thread; `None` to never
+    /// reject a thread.
     pub give_up_after: Option<u32>,
     /// Types of the threads that are answered.
     #[serde(default)]
@@ -54,7 +55,7 @@ impl Default for PriceFactor {
 }
 
 impl PriceFactor {
-    /// Returns the factor after a number of turns of the policy.
+    /// Returns the factor after the policy has taken `own_turns` turns.
     pub fn factor_after(&self, own_turns: u32) -> f64 {
         (self.start + self.step * f64::from(own_turns)).max(self.floor)
     }
@@ -68,7 +69,7 @@ pub enum ThreadTypes {
     #[default]
     #[serde(skip)]
     All,
-    /// A word: `all`, or an invalid word.
+    /// A single word: `all`, or an invalid word.
     Word(String),
     /// A list of thread types.
     List(Vec<String>),
@@ -109,8 +110,8 @@ impl EnterpriseRule {
         }
     }
 
-    /// Returns the calls that answer the waiting threads: one call with all offers and one call with all rejections.
-    /// Empty calls are omitted.
+    /// Returns the calls that answer the waiting threads: one call with all offers, and one call with all
+    /// rejections. Omits a call that would be empty.
     pub fn answer_calls(&self, waiting: &[WaitingThread]) -> Vec<(ToolId, Value)> {
         let mut threads: Vec<&WaitingThread> =
             waiting.iter().filter(|thread| self.types.contains(thread.kind)).collect();

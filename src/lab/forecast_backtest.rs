@@ -1,5 +1,5 @@
-//! Back-test of the outlook: companies are played, and the cash that was expected before each week is compared with the
-//! actual cash.
+//! Back-test of the outlook: plays companies, and compares the cash that was expected before each week with
+//! the actual cash.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,7 +19,7 @@ pub fn forecast_horizons() -> Vec<u32> {
     Params::bundled().limits.prediction_horizons_days
 }
 
-/// The forecasts for a company whose outcomes are known.
+/// The forecasts for a company, with their outcomes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompanyForecasts {
     /// Name of the policy or recorded run.
@@ -35,7 +35,7 @@ struct PastForecast {
     expected: f64,
     /// Amount to which errors are proportional, dollars.
     scale: f64,
-    /// Range by level, dollars.
+    /// Ranges of cash, by level, dollars.
     ranges: [(f64, f64); 2],
     /// Actual cash, or 0 after a bankruptcy, dollars.
     outcome: f64,
@@ -60,7 +60,8 @@ pub struct StageResult {
     pub covered_95: f64,
 }
 
-/// Plays a policy and returns the forecasts before each week. Without a scenario, the policy's scenario is used.
+/// Plays a policy and returns the forecasts before each week. If `scenario` is `None`, the policy's scenario
+/// is used.
 ///
 /// # Errors
 /// Fails if the run cannot start or a tool rejects a call that must succeed.
@@ -131,7 +132,8 @@ impl CompanyForecasts {
         let cash = session.cash_by_day();
         let scored = made.into_iter().filter_map(|(day, forecast)| {
             let due = day + forecast.horizon;
-            // After a bankruptcy, the score is 0. Otherwise, only successful companies would be measured.
+            // After a bankruptcy, the outcome is 0. If these forecasts were omitted, only successful
+            // companies would be measured.
             let outcome = match cash.get(due as usize) {
                 Some(cash) => cash.max(0.0),
                 None if went_bankrupt => 0.0,
@@ -143,7 +145,7 @@ impl CompanyForecasts {
     }
 }
 
-/// Returns the income and costs of the weeks from a day to another day, without one-time costs, in dollars.
+/// Returns the sum of the income and costs of the weeks between two days, without one-time costs, in dollars.
 fn turnover(session: &Session, after: u32, until: u32) -> f64 {
     let one_time = [
         Category::InitialFunding,

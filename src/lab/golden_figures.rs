@@ -17,10 +17,10 @@ type CellKey = (String, String, u32);
 pub struct ReferenceFigures {
     /// Name of the policy.
     pub policy: String,
-    /// Mean, standard deviation and number of seeds by cell.
+    /// Mean, standard deviation and number of seeds, by cell.
     pub cells: BTreeMap<CellKey, SampleStatistics>,
-    /// Values of each seed by cell, if the reference contains them. Single values are needed for figures that are
-    /// compared as logarithms.
+    /// Values of the single seeds, by cell, if the reference contains them. Figures that are compared as
+    /// logarithms need these values.
     per_seed: BTreeMap<CellKey, Vec<f64>>,
 }
 
@@ -63,7 +63,7 @@ const LOG_COMPARED_FIGURES: [&str; 17] = [
 /// Figures that are shown but excluded from the verdict. The satisfaction of churned authors differs by design.
 const EXCLUDED_FIGURES: [&str; 1] = ["posts_customer_cum"];
 
-/// Minimum number of seeds of a compared cell.
+/// Minimum number of seeds that a compared cell must have.
 const MIN_SEEDS: usize = 5;
 
 impl ReferenceFigures {
@@ -110,7 +110,7 @@ pub fn read_reference(folder: &Path, policy: &str) -> Result<ReferenceFigures, G
     Ok(reference)
 }
 
-/// File of a reference folder with facts about the whole reference.
+/// File in a reference folder that contains facts about the whole reference.
 const REFERENCE_FILE: &str = "reference.toml";
 
 #[derive(Deserialize)]
@@ -120,7 +120,8 @@ struct ReferenceFile {
     scenario: String,
 }
 
-/// Returns the scenario that `reference.toml` of a reference folder names, or `None` if the folder has no such file.
+/// Returns the scenario that is named in a reference folder's `reference.toml`, or `None` if the folder has
+/// no such file.
 ///
 /// # Errors
 /// Fails if the file cannot be read or is invalid.
@@ -237,8 +238,8 @@ fn log1p_values(values: &[f64]) -> Vec<f64> {
     values.iter().map(|value| libm::log1p(value.max(0.0))).collect()
 }
 
-/// Returns the difference of two means in standard errors. Returns 0 if the means agree to a millionth, and ±99 if
-/// neither sample varies.
+/// Returns the difference of two means in standard errors. Returns 0 if the relative difference is at most a
+/// millionth. Otherwise returns ±99 if neither sample varies.
 fn z_score(reference: &SampleStatistics, sample_statistics: &SampleStatistics) -> f64 {
     let difference = sample_statistics.mean - reference.mean;
     if difference.abs() < 1e-9 + 1e-6 * reference.mean.abs() {
@@ -268,7 +269,8 @@ impl GoldenComparison {
             .collect()
     }
 
-    /// Returns a text line per figure with the number of cells, the median z and the cell with the largest |z|.
+    /// Returns a line of text for each figure, with the number of cells, the median z and the cell with the
+    /// largest |z|.
     pub fn figure_lines(&self) -> Vec<String> {
         let mut by_figure: BTreeMap<&str, Vec<&ComparedCell>> = BTreeMap::new();
         self.cells.iter().for_each(|cell| by_figure.entry(&cell.figure).or_default().push(cell));

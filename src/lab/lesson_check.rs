@@ -150,7 +150,7 @@ fn run_play(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<Pla
     Ok(result)
 }
 
-/// Measures the figures of a lesson. Figures of the same play are measured in the same runs.
+/// Measures the figures of a lesson. Figures that are stated for the same play are measured in the same runs.
 fn measure_figures(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
     let mut plays: Vec<Vec<&MeasuredFigure>> = Vec::new();
     for figure in &lesson.plan.measured {

@@ -1,7 +1,8 @@
 //! The laboratory: policies, experiments over many seeds, and comparison with golden figures.
 //!
-//! A policy uses only information that a player can see. The paper's baseline is an exception: it chooses channels by
-//! the starting yields, which it reads from the parameters. Figures include hidden state, so policies play debug runs.
+//! A policy uses only information that a player can see. The paper's baseline is an exception: it chooses
+//! channels by the starting yields, which it reads from the parameters. The recorded figures include hidden
+//! state, so policies play debug runs.
 
 pub mod ablation;
 pub mod baseline;

@@ -15,8 +15,9 @@ use novamind_report::opponents::{OpponentResult, OpponentResults};
 use novamind_session::Session;
 use novamind_tools::Rejection;
 
-/// Plays the strong policies and the baseline in the world of a finished run. The seed, the demand surges, the number
-/// of days and the starting cash are the same as in the run. Returns `None` if `goes_on` stopped the simulation.
+/// Plays the strong policies and the baseline in the world of a finished run. The seed, the demand surges,
+/// the number of days and the starting cash are the same as in the run. Returns `None` if `goes_on` returned
+/// `false`, which stops the simulation.
 ///
 /// # Errors
 /// Same errors as [`ReplayedWorld::from_run`].

@@ -1,4 +1,5 @@
-//! Policies with randomly drawn settings, for measurements that should not rest on well-chosen decisions alone.
+//! Policies with randomly drawn settings, for measurements that should not depend only on well-chosen
+//! decisions.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

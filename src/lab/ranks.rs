@@ -10,8 +10,8 @@ pub fn mean_ranks(values: &[f64]) -> Vec<f64> {
     values.iter().map(place).collect()
 }
 
-/// Returns Spearman's rank correlation of the pairs, with mean ranks for ties. Returns `None` for fewer than three
-/// pairs or if one of the variables does not vary.
+/// Returns Spearman's rank correlation of the pairs, with mean ranks for ties. Returns `None` if there are
+/// fewer than three pairs or if one of the variables does not vary.
 pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
     if pairs.len() < 3 {
         return None;
@@ -26,9 +26,9 @@ pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
     (spread > 0.0).then(|| product(&left, &right) / spread)
 }
 
-/// Returns Kendall's coefficient of concordance W of several rankings, corrected for ties. W is 1 for equal rankings
-/// and about 1 / (number of rankings) for unrelated rankings. Returns `None` for fewer than two rankings or two items, or if
-/// every ranking has all items tied.
+/// Returns Kendall's coefficient of concordance W of several rankings, corrected for ties. W is 1 for equal
+/// rankings and about 1 / (number of rankings) for unrelated rankings. Returns `None` if there are fewer than
+/// two rankings, if there are fewer than two items, or if all items are tied in every ranking.
 pub fn concordance(rankings: &[Vec<f64>]) -> Option<f64> {
     let (judges, things) = (rankings.len() as f64, rankings.first()?.len() as f64);
     if judges < 2.0 || things < 2.0 {

@@ -190,8 +190,8 @@ pub(super) fn play_session(
     Ok(session)
 }
 
-/// Plays a policy without saving its run. One callback observes each day, and the other callback decides after each
-/// week whether to continue.
+/// Plays a policy without saving its run. The callback `watch` observes each day, and the callback `goes_on`
+/// decides after each week whether to continue.
 pub(super) fn play_while(
     goes_on: &dyn Fn() -> bool,
     policy: &Policy,
@@ -212,9 +212,9 @@ pub(super) fn is_over(session: &Session, spec: &RunSpec) -> bool {
     session.ended().is_some() || spec.stop_after_day.is_some_and(|until| session.day() >= until)
 }
 
-/// Returns the definition of the run that a policy and a specification request.
+/// Returns the definition of a policy's run with the given settings.
 pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
-    // Explicit overrides follow the policy's settings and take precedence.
+    // Explicit overrides come after the policy's settings, so they take precedence.
     let mut overrides = Vec::new();
     if spec.surges.or(policy.start.surges) == Some(false) {
         overrides.push(("demand_surge.probability".to_owned(), "0.0".to_owned()));

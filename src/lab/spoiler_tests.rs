@@ -1,5 +1,5 @@
-//! Tests that texts for new players do not reveal effective settings. The tour, the README, documents, pictures and
-//! examples must not contain the numbers of a bundled policy.
+//! Tests that texts for new players do not reveal settings that work well. The tour, the README, documents,
+//! pictures and examples must not contain the numbers of a bundled policy.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ struct PolicyNumbers {
     /// Budgets for development and ads by group, $ per day.
     development: Vec<(&'static str, f64)>,
     ads: Vec<(&'static str, f64)>,
-    /// Group and the channel in which the routine first advertises to the group.
+    /// Each advertised group, with the channel that the routine uses for it first.
     channels: Vec<(&'static str, &'static str)>,
 }
 

@@ -1,6 +1,6 @@
 //! Strong handwritten policies, for comparison with other runs (docs/interfaces/policies.md#strong-policies).
 
-/// Names of the strong policies. Strong policies play with the scenario's demand surges, as players do.
+/// Names of the strong policies. These policies play with the scenario's demand surges, as players do.
 pub const STRONG_POLICIES: [&str; 4] = ["ads-first", "enterprise-led", "harvest-late", "price-experimenting"];
 
 #[cfg(test)]

@@ -40,8 +40,8 @@ impl SymbolTable {
         })
     }
 
-    /// Expands arguments with symbols into the arguments of one or more calls. A symbol that is the value of an
-    /// argument produces one call per member. Returns no calls if a symbol is empty.
+    /// Expands arguments with symbols into the arguments of one or more calls. A symbol that is the value of
+    /// an argument produces one call for each member. Returns no calls if a symbol has no members.
     pub fn resolve(&self, arguments: &Value) -> Vec<Value> {
         let Some(map) = arguments.as_object() else { return vec![arguments.clone()] };
         let mut calls = vec![Map::new()];
@@ -64,7 +64,8 @@ impl SymbolTable {
         calls.into_iter().map(Value::Object).collect()
     }
 
-    /// Expands the symbols among the keys of a map. Explicit keys take precedence. Returns `None` if a symbol is empty.
+    /// Expands the symbols among the keys of a map. Explicit keys take precedence. Returns `None` if a symbol
+    /// has no members.
     fn expand_map(&self, value: &Value) -> Option<Value> {
         let Some(map) = value.as_object() else { return Some(value.clone()) };
         let mut spread = Map::new();

@@ -18,10 +18,11 @@ use novamind_report::research::late_project_lines;
 use novamind_session::{Forecasts, Observation, Session, TIME_LIMIT_RATIONALE, WeekResult};
 use novamind_tools::{FORECAST_KEYS, Forecast, Rejection};
 
-/// Rationale and forecasts that are submitted before a week.
+/// Source of the rationale and the forecasts that are submitted before a week.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NextWeekInput {
-    /// The command line contained the rationale and the predictions, or the lesson fills them in.
+    /// The rationale and the predictions are known: the command line contained them, or the lesson fills them
+    /// in.
     Given {
         /// Rationale as an argument of the tool `next_week`.
         rationale: Value,
@@ -30,7 +31,7 @@ pub enum NextWeekInput {
         /// Whether the forecast for each horizon is the naive forecast.
         naive: [bool; 4],
     },
-    /// The program must ask the player for rationale and forecasts.
+    /// The program must ask the player for the rationale and the forecasts.
     Ask,
 }
 
@@ -96,7 +97,8 @@ pub fn parse_next_week_input(
     }
 }
 
-/// Returns a submission. `left_out` supplies the predictions if `given` is null.
+/// Returns a submission with the predictions `given`. If `given` is null, `left_out` supplies the
+/// predictions.
 fn fill_predictions(
     rationale: Value,
     given: Value,
@@ -117,8 +119,8 @@ fn check_argument_name(name: &str, column: usize) -> Result<(), ParseError> {
     })
 }
 
-/// Parses point, lower and upper for each of four horizons, or for the first `asked` horizons, which end within the run.
-/// The other forecasts are naive.
+/// Parses point, lower and upper for each of four horizons, or only for the first `asked` horizons, which end
+/// within the run. The other forecasts are naive.
 fn parse_predictions(
     why: &Argument,
     numbers: &[Argument],
@@ -224,7 +226,7 @@ fn end_response(command: &str, session: &Session, week: &WeekResult) -> CommandR
 /// Asks the player for rationale and forecasts. Returns `None` if the player cancels.
 ///
 /// # Errors
-/// The input or the prompt fails.
+/// The input cannot be read, or the prompt cannot be written.
 pub fn ask_next_week_input(session: &Session, input: &mut LineSource) -> io::Result<Option<NextWeekInput>> {
     let seen = session.company().observe();
     let changes = seen.changes.iter().map(super::commands::describe_setting_change);

@@ -178,7 +178,7 @@ pub struct Interpreter {
     pub session: Session,
     library: QueryLibrary,
     watch: SignalWatch,
-    /// Whether a person types the lines and can answer questions.
+    /// Whether a user types the lines and can answer questions.
     pub(super) is_interactive: bool,
     /// Function that checks the experimenter's code; `None` if no code is defined.
     pub(super) code_check: Option<CodeCheck>,
@@ -191,7 +191,8 @@ pub struct Interpreter {
 }
 
 impl Interpreter {
-    /// Creates an interpreter for a session. `prompts` states whether a person types the lines and can answer questions.
+    /// Creates an interpreter for a session. `prompts` states whether a user types the lines and can answer
+    /// questions.
     pub fn new(
         mut session: Session,
         library: QueryLibrary,
@@ -373,7 +374,7 @@ impl Interpreter {
         outcome.unwrap_or_else(syntax_error)
     }
 
-    /// Calls a tool by its name, with or without its module.
+    /// Calls a tool by its name, which may be preceded by the name of its module.
     fn call_tool(
         &mut self,
         word: &str,
@@ -399,7 +400,7 @@ impl Interpreter {
         }
     }
 
-    /// Returns warnings for R&D projects that end after the last day.
+    /// Returns a warning if a started R&D project ends after the last day.
     fn late_project_warnings(&self, started: &novamind_tools::Answer) -> Vec<String> {
         let novamind_tools::Answer::StartResearchProject(started) = started else { return Vec::new() };
         let last_day = self.session.manifest().days;
@@ -440,10 +441,10 @@ impl Interpreter {
     }
 }
 
-/// Parses a line that calls a tool. `next_week` and `query` are separate commands and not accepted.
+/// Parses a line that calls a tool. Does not accept `next_week` and `query`, which are separate commands.
 ///
 /// # Errors
-/// The line is not a tool call. The message says what is wrong.
+/// The line is not a tool call. The message describes the problem.
 pub fn parse_tool_call(line: &str) -> Result<(ToolId, Value), String> {
     let parsed = grammar::parse_line(line).map_err(|problem| problem.text)?;
     let ParsedLine::Call { word, column, arguments } = parsed else {
@@ -459,7 +460,8 @@ pub fn parse_tool_call(line: &str) -> Result<(ToolId, Value), String> {
     Ok((tool.spec().id, arguments))
 }
 
-/// Finds a tool by its name, with or without its module. `next_week` and `query` are separate commands.
+/// Finds a tool by its name, which may be preceded by the name of its module. Does not find `next_week` and
+/// `query`, which are separate commands.
 fn find_tool(word: &str) -> Option<&'static dyn AnyTool> {
     let (module, name) = match word.split_once('.') {
         Some((module, name)) => (Some(module), name),

@@ -1,4 +1,5 @@
-//! Reasons why a plain-mode session ended, with their names in responses, causes in the record, and exit codes.
+//! Reasons why a plain-mode session ended. Each reason has a name in responses, a cause in the record, and an
+//! exit code.
 
 use novamind_record::trajectory::record::DetachCause;
 
@@ -44,7 +45,7 @@ impl EndReason {
             EndReason::Quit | EndReason::RunOver => DetachCause::Quit,
             EndReason::EndOfInput => DetachCause::EndOfInput,
             EndReason::StrictRejection => DetachCause::Strict,
-            // The cause does not matter, because the record no longer has a file.
+            // The cause is never written, because the record no longer has a file.
             EndReason::RecordLost => DetachCause::Quit,
             EndReason::Signal(HANGUP) => DetachCause::Hangup,
             EndReason::Signal(_) => DetachCause::Signal,

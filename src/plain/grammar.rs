@@ -70,7 +70,7 @@ fn is_inbox_condition(rest: &str) -> bool {
     rest.split_whitespace().find(|word| *word != "all") == Some("where")
 }
 
-/// Returns the statement of `xray sql …` with its optional day. Returns `None` for other views.
+/// Returns the statement of `xray sql …`, preceded by the optional day. Returns `None` for other views.
 pub fn xray_statement(rest: &str) -> Option<&str> {
     let rest = rest.trim_start().strip_prefix("sql")?;
     (rest.is_empty() || rest.starts_with(char::is_whitespace)).then(|| rest.trim())

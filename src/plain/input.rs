@@ -1,4 +1,5 @@
-//! Reads input lines. Joins continued lines, removes byte order marks and carriage returns, and rejects long or invalid lines.
+//! Reads input lines. Joins continued lines, removes byte order marks and carriage returns, and rejects lines
+//! that are too long or not UTF-8.
 
 use std::io::{self, BufRead, Read as _};
 
@@ -59,7 +60,7 @@ impl<R: BufRead> Input<R> {
         }
     }
 
-    /// Reads one line of the source without its continuation lines.
+    /// Reads one line of the source, without continuation lines.
     fn read_physical_line(&mut self) -> io::Result<InputLine> {
         let mut bytes = Vec::new();
         let limit = MAX_LINE_BYTES as u64 + 2;

@@ -70,12 +70,13 @@ fn run_dialogue(
     interpreter.is_participant = study.is_some();
     let mut out = io::stdout();
     let end = command_loop(&mut interpreter, lines, &mut out, style, study);
-    // An output error means that the terminal or the reader of the output was closed.
+    // An output error means that the terminal was closed or that the reader of the output has ended.
     interpreter
         .session
         .activity()
         .detach(end.as_ref().map_or(DetachCause::Hangup, |end| end.leaving_cause()));
-    // Every confirmed change is already on disk. Only derived rows can be missing, and the program can rebuild them.
+    // Every confirmed change is already on disk. If saving fails, only derived rows are missing, and the
+    // program can rebuild them.
     let _ = interpreter.session.save();
     let end = end?;
     if end == EndReason::Withdrawn {
@@ -182,7 +183,7 @@ fn confirm_withdrawal(style: OutputStyle, lines: &mut LineSource) -> io::Result<
     Ok(matches!(lines.read_line()?, InputLine::Line(line) if line.trim() == "withdraw"))
 }
 
-/// Shows a prompt on an output stream that is visible to the user.
+/// Writes a prompt to an output stream that is visible to the user.
 fn show_prompt(text: &str) -> io::Result<()> {
     let write = |out: &mut dyn Write| out.write_all(text.as_bytes()).and_then(|()| out.flush());
     if io::stdout().is_terminal() { write(&mut io::stdout()) } else { write(&mut io::stderr()) }

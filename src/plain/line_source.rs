@@ -65,7 +65,7 @@ impl LineSource {
         self.is_requested
     }
 
-    /// Waits for a line. After a signal, returns the end of input; the signal watch reports the signal.
+    /// Waits for a line. After a signal, returns the end of input. The signal watch then returns the signal.
     ///
     /// # Errors
     /// Standard input cannot be read.

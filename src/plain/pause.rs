@@ -113,7 +113,7 @@ impl Interpreter {
         }
     }
 
-    /// Stops the clock again if a time limit had stopped it before the run was reopened.
+    /// Stops the clock again if a time limit had stopped the clock before the run was reopened.
     pub(super) fn restore_limit_pause(&mut self) -> Option<CommandResponse> {
         if !self.session.log().is_stopped_by_limit() {
             return None;

@@ -43,7 +43,8 @@ pub(super) fn ask_due_questions(
     Ok(None)
 }
 
-/// Reads lines until the participant gives a valid answer or leaves. Unlike in the console, an answer cannot be changed.
+/// Reads lines until the participant gives a valid answer or leaves. Unlike in the console, participants
+/// cannot change an answer.
 fn ask_question(
     due: &DueQuestion,
     session: &mut Session,
@@ -134,7 +135,7 @@ fn list_choices(form: &AnswerFormat) -> Vec<String> {
     }
 }
 
-/// Describes valid answers with the same words as the error for an invalid answer.
+/// Describes valid answers in the same words as the error for an invalid answer.
 fn describe_expected_answer(form: &AnswerFormat) -> String {
     form.parse_answer("").err().unwrap_or_default()
 }

@@ -31,7 +31,7 @@ pub enum CommandResponse {
         problem: String,
         /// Column of the error, counted from 1.
         column: usize,
-        /// The word at this column, if the description does not name the word.
+        /// The word at this column; `None` if the description already contains the word.
         word: Option<String>,
     },
     /// The player entered `quit` or `exit`.
@@ -44,8 +44,8 @@ impl CommandResponse {
         CommandResponse::Success { command: command.to_owned(), text, data }
     }
 
-    /// Returns the response of an accepted tool call. The text lists the fields of `shown` if given, otherwise the
-    /// fields of `data`.
+    /// Returns the response of an accepted tool call. The text lists the fields of `shown`, or the fields of
+    /// `data` if `shown` is `None`.
     pub fn tool_result(command: &str, data: Value, shown: Option<Value>) -> CommandResponse {
         let mut text = format!("ok {command}\n");
         match normalize_json_numbers(shown.unwrap_or_else(|| data.clone())) {
@@ -187,7 +187,7 @@ fn format_table(list: &[Value]) -> String {
     align_columns(&columns, &rows)
 }
 
-/// Shortens long words. An error message quotes the input, which may be a pasted file.
+/// Shortens long words, because an error message quotes the input, which may be a pasted file.
 fn shorten_long_words(text: &str) -> String {
     const MAX_WORD_CHARACTERS: usize = 80;
     let cut = |word: &str| match word.char_indices().nth(MAX_WORD_CHARACTERS) {

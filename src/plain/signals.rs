@@ -1,5 +1,5 @@
-//! Handles ctrl-c and termination signals. A signal cancels a query or a simulation, and ends a prompt immediately. A
-//! running week is simulated to its end first.
+//! Handles ctrl-c and termination signals. A signal cancels a query or a what-if simulation and ends a prompt
+//! immediately. A running week is first simulated to its end.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -34,8 +34,8 @@ struct WatchState {
 }
 
 impl SignalWatch {
-    /// Starts to watch for signals. `prompt` is called for signals at a prompt. If signals cannot be watched, a signal
-    /// ends the program, and no confirmed data is lost.
+    /// Starts to watch for signals. `prompt` is called for signals at a prompt. If signals cannot be watched,
+    /// a signal ends the program immediately, and no confirmed data is lost.
     pub fn start(prompt: impl Fn(i32) + Send + 'static) -> SignalWatch {
         let state = WatchState {
             phase: Phase::Working,
@@ -96,7 +96,8 @@ impl SignalWatch {
         self.lock_state().phase = phase;
     }
 
-    /// Sets the activity to waiting for a line. Returns false if a signal has already arrived, because the wait would not end.
+    /// Sets the activity to waiting for a line. Returns `false` if a signal has already arrived, because this
+    /// signal would not end the wait.
     pub fn enter_prompt(&self) -> bool {
         let mut state = self.lock_state();
         let waits = state.caught.is_none();

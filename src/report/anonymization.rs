@@ -1,9 +1,9 @@
 //! Anonymized tables of a study. Labels, runs and machines are renamed, times are relative to the start of each run,
 //! and texts written by people are removed or masked.
 //!
-//! New names are derived from a secret that the experimenter keeps, so names in tables collected later are consistent.
-//! The table of runs contains a hash of the last hash in each sealed original. Anyone who has the original can prove
-//! that it belongs to the run.
+//! New names are derived from a secret that the experimenter keeps, so names in tables collected later are
+//! consistent. For each run, the table of runs contains a hash of the last hash in the sealed original.
+//! Anyone who has an original can therefore prove to which run it belongs.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,7 +42,7 @@ pub struct RunLink {
 pub const LINK_COLUMNS: [&str; 6] =
     ["participant", "new_participant", "run", "new_run", "last_hash", "original"];
 
-// Columns by which a person who knows a participant could identify the participant.
+// Columns by which someone who knows a participant could identify this person.
 const IDENTIFYING_COLUMNS: [(&str, &str); 4] =
     [("runs", "assigned_order"), ("runs", "problem"), ("notes", "digest"), ("visits", "folder")];
 
@@ -59,8 +59,8 @@ pub struct AnonymizedTables {
     pub tables: Vec<NamedTable>,
     /// Links from the new names to the original runs.
     pub links: Vec<RunLink>,
-    /// Size and shared values of the smallest group of sessions with the same seed and condition. Omitted columns are
-    /// ignored. `None` if both columns are omitted or no session exists.
+    /// Size of the smallest group of sessions that have the same seed and condition, and these values.
+    /// Omitted columns are ignored. `None` if both columns are omitted or no session exists.
     pub smallest_group: Option<(usize, String)>,
 }
 
@@ -91,7 +91,7 @@ impl Anonymizer {
     /// Returns the anonymized tables of an export or a collection, and the links to the originals.
     ///
     /// # Errors
-    /// Returns an error if a table or column is missing, or if two names would be replaced by the same name.
+    /// Returns an error if a table or column is missing, or if the same new name would replace two names.
     pub fn anonymize(&mut self, tables: &[NamedTable]) -> Result<AnonymizedTables, String> {
         let all = |name: &str| {
             let found = tables.iter().find(|(text, _)| text == name).map(|(_, rows)| rows.as_slice());
@@ -147,7 +147,7 @@ impl Anonymizer {
     /// Checks that the columns to omit exist and do not join the tables.
     ///
     /// # Errors
-    /// Returns an error with the first column that does not exist or that joins the tables.
+    /// Returns an error that names the first column that does not exist or that joins the tables.
     pub fn check_omitted_columns(&self) -> Result<(), String> {
         let known = |name: &str| {
             table_headings().iter().any(|(_, column_headings)| {
@@ -216,8 +216,8 @@ impl Anonymizer {
             let of = |name: &str| known.get(name).copied().unwrap_or_default();
             made.push(((self.new_label(of("participant")), self.new_run_name(of("run"))), cells.collect()));
         }
-        // Sorts the rows by label and run, because the original order reveals when participants played. The order
-        // within a run is kept.
+        // The rows are sorted by label and run, because the original order reveals when participants played.
+        // The order within a run is kept.
         made.sort_by(|one: &((String, String), Vec<String>), other| one.0.cmp(&other.0));
         let head = columns.iter().map(|heading| anonymized_column_name(heading).to_owned()).collect();
         Ok(std::iter::once(head).chain(made.into_iter().map(|(_, row)| row)).collect())
@@ -269,7 +269,7 @@ impl Anonymizer {
             Some((name @ ("machine" | "boot"), value)) => {
                 format!("{name}={}", self.keyed_name(name, value, 16))
             }
-            // The value is removed because it reveals when the computer was started.
+            // The value would reveal when the computer was started.
             Some(("monotonic_ms", _)) => "monotonic_ms=".to_owned(),
             _ => part.to_owned(),
         };

@@ -24,7 +24,7 @@ pub const COST_CATEGORIES: [(&str, &[&str]); 6] = [
     ("market studies", &["market_research", "group_research"]),
 ];
 
-/// Kinds of income and their ledger categories, without the initial funding.
+/// Kinds of income and their ledger categories, excluding the initial funding.
 pub const INCOME_CATEGORIES: [(&str, &[&str]); 2] =
     [("payments", &["subscription_payment"]), ("ad revenue", &["ad_revenue"])];
 
@@ -39,7 +39,8 @@ pub fn cost_shares(totals: &BTreeMap<&str, f64>) -> Vec<CostShare> {
     all.into_iter().map(|(name, dollars)| CostShare { name, dollars, share: dollars / sum }).collect()
 }
 
-/// Describes turning points: the peak of subscribers, the last profitable week, and the weeks before the bankruptcy.
+/// Describes turning points: the peak number of subscribers, the last profitable week, and the weeks before
+/// the bankruptcy.
 pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
     let Some(last) = weeks.last() else { return Vec::new() };
     let mut texts = Vec::new();

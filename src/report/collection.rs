@@ -21,7 +21,7 @@ pub struct CollectOptions<'a> {
     pub output_folder: &'a Path,
     /// The study that is collected; `None` to collect runs without a study definition.
     pub study: Option<&'a Study>,
-    /// Labels that replace the recorded labels, by run.
+    /// Labels that replace the recorded labels, by run ID.
     pub labels: &'a BTreeMap<String, String>,
     /// Keys of the lab that collects the study.
     pub keys: LabKeys<'a>,
@@ -53,12 +53,13 @@ pub struct CollectionResult {
     pub runs: Vec<(Option<String>, Seal, PathBuf)>,
     /// Warnings for the experimenter.
     pub notes: Vec<CollectNote>,
-    /// Number of runs that were found, by result.
+    /// Number of participants who visited the study, by outcome.
     pub visits: VisitSummary,
 }
 
-/// Collects a study: replays every run, verifies it and seals it in an archive. `progress` is called with the number
-/// of finished runs and the total number of runs. Archives of earlier collections are replaced, because trajectories only grow.
+/// Collects a study: replays every run, verifies it and seals it in an archive. `progress` is called with the
+/// number of finished runs and the total number of runs. Archives of earlier collections are replaced. They
+/// contain nothing else, because trajectories only grow.
 ///
 /// # Errors
 /// Returns an error if the output folder cannot be written.

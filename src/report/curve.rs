@@ -42,7 +42,7 @@ pub fn rows(curve_explorer: &CurveExplorer) -> Vec<Vec<String>> {
     curve_explorer.points.iter().step_by(POINTS_PER_ROW).map(row).collect()
 }
 
-/// Explains the dash in [`rows`], and what the estimates leave out.
+/// Returns footnotes that explain the dash in [`rows`] and what the estimates leave out.
 pub fn footnotes(curve_explorer: &CurveExplorer) -> Vec<String> {
     let mut lines = Vec::new();
     if rows(curve_explorer).iter().flatten().any(|cell| cell == UNREACHABLE) {

@@ -1,5 +1,6 @@
-//! Data for reports. Money by category and week is read from the ledger. Groups by week and leads by channel are read
-//! by guarded queries of the visible tables. Data of failed queries is omitted, and the queries are listed.
+//! Data for reports. Amounts by category and week are read from the ledger. Groups by week and leads by
+//! channel are read by guarded queries of the visible tables. If a query fails, its data is omitted and the
+//! query is listed.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ SELECT (min(s.end_day, (SELECT max(day) FROM service_day)) + 6) / 7, c.group_id,
 FROM subscriptions s CROSS JOIN customers c
 WHERE c.customer_id = s.customer_id AND s.status = 'cancelled' GROUP BY 1, 2";
 
-// Excludes customer 1, the market observer, who is the author of news.
+// Excludes customer 1, the market observer, which is the author of news.
 const GROUP_LEADS_SQL: &str = "SELECT group_id, count(*) FROM customers WHERE customer_id > 1 GROUP BY 1";
 
 const GROUP_REVENUE_SQL: &str = "SELECT c.group_id, sum(s.effective_price * s.seat_count)
@@ -163,7 +164,7 @@ fn channel_row(row: &[Cell]) -> ChannelRow {
     }
 }
 
-/// Returns the ledger amounts of each week, and of the days since the last week.
+/// Returns the ledger amounts of each week, including the days since the last complete week.
 fn ledger_by_week(session: &Session) -> BTreeMap<u32, BTreeMap<&'static str, f64>> {
     let since = session.company().observe().booked_since;
     let weeks = session.weeks().iter().map(|week| week.booked).chain([since]);

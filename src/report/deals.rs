@@ -20,7 +20,7 @@ pub fn describe_deals(tool: ToolId, arguments: &Value, names: &EnterpriseNames) 
         deals.iter().take(MAX_LISTED_DEALS).map(|deal| describe_deal(deal, names)).collect();
     let mut words = texts.filter(|text| !text.is_empty())?.join(" · ");
     if deals.len() > MAX_LISTED_DEALS {
-        words += &format!(" · {} more", pluralize((deals.len() - MAX_LISTED_DEALS) as u32, "enterprise"));
+        words += &format!(" · {}", pluralize((deals.len() - MAX_LISTED_DEALS) as u32, "more enterprise"));
     }
     Some(words)
 }
@@ -75,7 +75,7 @@ mod tests {
         }
         let many: Vec<u32> = (1..=3_569).collect();
         let many = describe(ToolId::RejectEnterpriseDeal, json!(many)).expect("words");
-        assert!(many.ends_with(" · 3,566 enterprises more"), "{many}");
+        assert!(many.ends_with(" · 3,566 more enterprises"), "{many}");
         for none in [json!([]), json!(["x"]), json!([[7, [["B"]]]]), json!([-4])] {
             assert_eq!(describe(send, none.clone()), None, "{none}");
         }

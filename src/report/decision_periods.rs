@@ -1,4 +1,5 @@
-//! Decisions by week: settings with old and new values, purchases and messages, and the first line of the rationale.
+//! Decisions by week: settings with old and new values, purchases, posts and offers, and the first line of
+//! the rationale.
 
 use serde_json::Value;
 
@@ -134,7 +135,7 @@ fn describe_actions(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String
         _ => None,
     });
     let mut deeds: Vec<(String, u32)> = Vec::new();
-    // The text of each post replaces the entry that only reports the post.
+    // The entry that contains the text of a post replaces the entry that only mentions the post.
     for deed in decided.purchases.iter().filter(|deed| !deed.starts_with("post ")).cloned().chain(posts) {
         match deeds.iter_mut().find(|(known, _)| *known == deed) {
             Some((_, times)) => *times += 1,

@@ -1,4 +1,4 @@
-//! Rates how unusual the change of a figure is compared with earlier weeks.
+//! Rates how unusual a figure's change is, compared with its changes in earlier weeks.
 
 /// A change of a figure over the last week.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -7,7 +7,7 @@ pub struct FigureChange {
     pub old: f64,
     /// Value at the end of the last week.
     pub new: f64,
-    /// Rating of the change: 0 is usual, above 3 is rare.
+    /// Rating of the change: 0 for a usual change, above 3 for a rare one.
     pub unusualness: f64,
     /// Size of the figure's random variation.
     pub noise: f64,
@@ -28,7 +28,7 @@ impl FigureChange {
         (self.new - self.old).abs() / self.old.abs().max(self.new.abs())
     }
 
-    /// Describes a change that is the largest in a number of weeks. Returns an empty text for other changes.
+    /// Describes the change if it is the largest one in several weeks. Returns an empty text otherwise.
     pub fn describe_rarity(&self) -> String {
         let what = if self.new > self.old { "rise" } else { "fall" };
         match self.weeks_since_larger {
@@ -44,11 +44,11 @@ impl FigureChange {
     }
 }
 
-/// Rates the last change of a series, which starts with the oldest value. Returns `None` if there are fewer than two
-/// values or the value did not change. With enough weeks, the change is compared with the median change and the median
-/// distance from this median. Otherwise the relative size of the change is used. A change of about `noise`, the random
-/// variation of the
-/// figure, is never unusual.
+/// Rates the last change of a series, which starts with the oldest value. Returns `None` if there are fewer
+/// than two values or if the last value did not change. If the series has enough weeks, the change is
+/// compared with the median change and with the median distance from this median. Otherwise, the relative
+/// size of the change is used. A change of about `noise`, the random variation of the figure, is never
+/// unusual.
 pub fn last_change(series: &[f64], noise: f64) -> Option<FigureChange> {
     let [.., old, new] = *series else { return None };
     if old == new || !old.is_finite() || !new.is_finite() {
@@ -60,7 +60,7 @@ pub fn last_change(series: &[f64], noise: f64) -> Option<FigureChange> {
     let since = before.iter().rev().position(as_large).map(|at| at + 1);
     let size = change.abs() / old.abs().max(new.abs());
     let unusual = if before.len() < MIN_EARLIER_CHANGES {
-        // With this factor, a change of one half is rated unusual and a change of one tenth is not.
+        // With this factor, a change by one half is rated unusual, and a change by one tenth is not.
         size * 6.0
     } else {
         let usual = median(&before);

@@ -1,6 +1,6 @@
-//! Fit: the plans compared with the estimated requirements of a group. An estimate is a range around the value of a
-//! market study, so the value of a plan is below, in or above the range. A deficit is reported only if it exists for
-//! every value in the range.
+//! Fit: the plans compared with the estimated requirements of a group. An estimate is a range around the
+//! value from a market study, so a plan's figure is below, in or above the range. A deficit is reported only
+//! if it exists for every value in the range.
 
 use serde::Serialize;
 
@@ -24,7 +24,7 @@ pub struct TrueValueRange {
 pub enum RangePosition {
     /// The figure is below the range.
     Below,
-    /// The figure is in the range, so the true value can be smaller or larger.
+    /// The figure is in the range, so the true value can be smaller or larger than the figure.
     InRange,
     /// The figure is above the range.
     Above,
@@ -36,7 +36,7 @@ impl TrueValueRange {
         true_value_range(estimate, share).into()
     }
 
-    /// Compares a figure with the range, which includes both ends.
+    /// Compares a figure with the range, which includes both endpoints.
     pub fn position_of(&self, figure: f64) -> RangePosition {
         match figure {
             figure if figure < self.least => RangePosition::Below,
@@ -55,7 +55,7 @@ impl TrueValueRange {
         format!("${}", format_range(self.least, self.most, 0).replace(" to ", " to $"))
     }
 
-    /// Formats the range in whole numbers, if the label already has the unit: `180 to 841`.
+    /// Formats the range as whole numbers, for labels that already have the unit: `180 to 841`.
     pub fn format_units(&self) -> String {
         format_range(self.least, self.most, 0)
     }
@@ -97,7 +97,7 @@ impl FitCriterion {
 pub struct PlanFit {
     /// Plan that is compared with the requirements of the group.
     pub plan: Plan,
-    /// List price, dollars a month; 0 if the plan is not on sale.
+    /// List price, dollars per month; 0 if the plan is not on sale.
     pub list_price: f64,
     /// List price less the discount for leads from all channels. Leads compare this price with their budget.
     /// Enterprises negotiate their price.
@@ -119,9 +119,9 @@ pub struct LeadFlow {
     pub channel_leads: u32,
     /// Number of leads by word of mouth.
     pub word_of_mouth: u32,
-    /// Number of enterprises among the leads that requested an offer.
+    /// Number of leads that are enterprises and requested an offer.
     pub requests: u32,
-    /// Number of individuals who signed up, or of enterprises that accepted their first deal.
+    /// Number of individuals who signed up, or number of enterprises that accepted their first deal.
     pub signups: u32,
 }
 
@@ -142,7 +142,7 @@ pub struct Fit {
     pub floor: TrueValueRange,
     /// Mean budget: dollars per month for individuals, dollars per seat per month for enterprises.
     pub budget: TrueValueRange,
-    /// Mean usage of an individual, or usage of the smallest enterprise, units a day.
+    /// Mean usage of an individual, or usage of the smallest enterprise, units per day.
     pub usage: TrueValueRange,
     /// The plans that are compared with the group's requirements.
     pub plans: ByPlan<PlanFit>,
@@ -275,7 +275,7 @@ impl Fit {
         }
     }
 
-    /// Describes the certain deficits of a plan, and the criteria with an uncertain result.
+    /// Describes the certain deficits of a plan, and the criteria for which the result is uncertain.
     pub fn describe_gaps(&self, plan: Plan) -> String {
         let plan_fit = &self.plans[plan];
         if plan_fit.list_price <= 0.0 {

@@ -94,7 +94,7 @@ pub fn format_number(value: f64) -> String {
     grouped_number(value, if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 })
 }
 
-/// Formats a range, with the lower end rounded down and the upper end rounded up: `18 to 87`.
+/// Formats a range, with the lower endpoint rounded down and the upper endpoint rounded up: `18 to 87`.
 pub fn format_range(least: f64, most: f64, decimals: usize) -> String {
     let unit = (0..decimals).fold(1.0, |unit, _| unit * 10.0);
     // Ignores rounding errors in whole numbers of units.
@@ -108,7 +108,7 @@ pub fn format_percentage_points(difference: f64, decimals: usize) -> String {
     format!("{} pt", grouped_number(100.0 * difference, decimals))
 }
 
-/// Formats the number of an axis label without trailing zeros: `1.5M`, `200k`, `0`.
+/// Formats the number in an axis label without trailing zeros: `1.5M`, `200k`, `0`.
 pub fn format_tick(value: f64) -> String {
     let text = compact_number(value);
     let (digits, suffix) = match text.find(|letter: char| letter.is_ascii_alphabetic()) {
@@ -122,7 +122,7 @@ pub fn format_tick(value: f64) -> String {
     format!("{digits}{suffix}")
 }
 
-/// Formats the number of an axis label in dollars.
+/// Formats the dollar amount in an axis label.
 pub fn format_dollar_tick(value: f64) -> String {
     let sign = if value < 0.0 { "-" } else { "" };
     format!("{sign}${}", format_tick(value.abs()))

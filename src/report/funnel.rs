@@ -20,9 +20,9 @@ pub struct Funnel {
     pub recently_lost: u32,
     /// The plan that delivers the highest quality to the group, and the delivered quality.
     pub best_quality: Option<(Plan, f64)>,
-    /// Quota of the plan with the highest quality, units a day.
+    /// Quota of the plan with the highest quality, units per day.
     pub quota: f64,
-    /// Estimated usage of the smallest enterprise, units a day.
+    /// Estimated usage of the smallest enterprise, units per day.
     pub usage: TrueValueRange,
     /// Estimated mean required quality of the group.
     pub floor: TrueValueRange,

@@ -1,5 +1,5 @@
-//! Writes a page as one self-contained HTML file without scripts. Light or dark colors follow the setting of the
-//! reader's system.
+//! Writes a page as one self-contained HTML file without scripts. The page is light or dark, depending on the
+//! reader's system settings.
 
 use super::page::{Bar, Block, NamedValue, Page, Table};
 use super::svg;
@@ -40,7 +40,8 @@ pub fn to_html(page: &Page) -> String {
     )
 }
 
-/// Maximum number of sections that are expanded at first. If a page has more sections, all of them are collapsed.
+/// Maximum number of sections that are initially expanded. If a page has more sections, all of them are
+/// collapsed.
 const MAX_EXPANDED_SECTIONS: usize = 12;
 
 struct BlockContext {

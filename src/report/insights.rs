@@ -49,7 +49,7 @@ fn replace_with_ranges(value: &Value, noise: f64) -> Value {
     }
 }
 
-/// Formats a range with enough decimals to show two significant digits of the lower end.
+/// Formats a range with enough decimals to show two significant digits of the lower endpoint.
 fn format_noise_range(estimate: f64, noise: f64) -> String {
     let (least, most) = true_value_range(estimate, noise);
     let decimals = match least.abs() {

@@ -20,7 +20,8 @@ pub struct AdWindow {
     pub leads: u32,
     /// Advertising spending in these weeks, dollars.
     pub spend: f64,
-    /// Number of these leads who paid a first bill. `None` for enterprises, which are billed weeks after they arrive.
+    /// Number of these leads who paid a first bill; `None` for enterprises, which are billed weeks after they
+    /// arrive.
     pub first_bills: Option<u32>,
 }
 
@@ -69,9 +70,10 @@ impl AdWindow {
 }
 
 impl LeadCost {
-    /// Returns the ratio of the current to the lowest cost per lead. Returns `None` if the ratio is too small, or if
-    /// the spending would bring fewer than [`MIN_LEADS`] leads at the lowest cost. A difference in so few leads can be random.
-    /// If there are no leads, the whole spending counts as the cost of one lead.
+    /// Returns the ratio of the current to the lowest cost per lead. Returns `None` if the ratio is too
+    /// small, or if the spending would bring fewer than [`MIN_LEADS`] leads at the lowest cost. A difference
+    /// between so few leads can be random. If there are no leads, the total spending counts as the cost of
+    /// one lead.
     pub fn cost_rise(&self) -> Option<f64> {
         let before = self.cheapest?.cost_per_lead()?;
         let now = self.recent.cost_per_lead().unwrap_or(self.recent.spend);

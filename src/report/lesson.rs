@@ -17,7 +17,7 @@ pub fn event_name(event: LessonEvent) -> &'static str {
     }
 }
 
-/// Describes a `lesson` event of a trajectory without reading the lesson file.
+/// Describes a `lesson` event of a trajectory. Does not read the lesson file.
 pub fn describe_note(note: &RecordedLessonEvent) -> String {
     let number = note.number.unwrap_or(1);
     let value = note.value.map(compact_number).unwrap_or_else(|| "none".to_owned());

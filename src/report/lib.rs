@@ -84,7 +84,7 @@ pub fn debrief_to_html(debrief: &Debrief) -> String {
     html::to_html(&debrief::debrief_page(debrief))
 }
 
-/// Returns the card of a run as text of 80 columns.
+/// Returns the card of a run as text that is 80 columns wide.
 pub fn card_to_text(report: &RunReport) -> String {
     card::to_text(report)
 }

@@ -1,4 +1,4 @@
-//! Writes a page as Markdown that is readable as source and rendered.
+//! Writes a page as Markdown that is readable both as source and when rendered.
 
 use super::page::{Bar, Block, Chart, Curve, Page, Plot, Table};
 use super::plot::{SPARKLINE_CHARS, sparkline_char};
@@ -92,7 +92,7 @@ fn chart_markdown(chart: &Chart) -> String {
     let mut parts = vec![format!("**{}.** {}", escape(&chart.title), escape(&chart.summary))];
     let trends: Vec<(String, String)> = match &chart.plot {
         Plot::Lines { curves, .. } => {
-            // All curves of a chart have the same scale so that they can be compared.
+            // All curves of a chart have the same scale, so that they can be compared.
             let all: Vec<f64> = curves.iter().flat_map(curve_values).collect();
             let trend = |curve: &Curve| sparkline_between(&curve_values(curve), min_and_max(&all));
             curves.iter().map(|curve| (curve.name.clone(), trend(curve))).collect()
@@ -151,7 +151,8 @@ pub fn escape(text: &str) -> String {
         };
         let marks = match letter {
             '\\' | '`' | '*' | '[' | ']' | '<' | '>' | '|' | '~' | '&' => true,
-            // Underscores in names of tools and channels are not escaped, which makes the source easier to read.
+            // Underscores inside words, such as names of tools and channels, are not escaped. The source is
+            // easier to read without backslashes.
             '_' => !(inside_word(at.checked_sub(1)) && inside_word(at.checked_add(1))),
             '#' | '-' | '+' | '=' => {
                 at == 0 && characters.get(1).is_none_or(|next| !next.is_ascii_digit() && *next != '$')

@@ -10,20 +10,22 @@ use novamind_tools::ToolId;
 /// Number of weeks over which conversion is measured.
 pub const MEASURED_WEEKS: usize = 4;
 
-/// Settings that leads evaluate when they arrive. A change of them ends the period in which all leads saw the same plans.
+/// Settings that leads evaluate when they arrive. If one of them changes during the measured weeks, not all
+/// leads saw the same plans.
 pub const SETTINGS_JUDGED_BY_LEADS: [ToolId; 4] =
     [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetUsageQuotas, ToolId::SetLeadPromotion];
 
-/// Leads of a group in the last weeks, and how many of them took a plan.
+/// Number of leads of a group in the last weeks, and number of those leads that took a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredConversion {
-    /// Number of individuals who signed up, or of enterprises that requested an offer.
+    /// Number of individuals who signed up, or number of enterprises that requested an offer.
     pub taken: u32,
     /// Number of leads.
     pub leads: u32,
     /// First and last measured week; `None` before the first week.
     pub weeks: Option<(u32, u32)>,
-    /// Day of the last change of the plans after the start of the measured weeks, if they changed.
+    /// Day of the last change of the plans after the start of the measured weeks; `None` if the plans did not
+    /// change.
     pub changed_on: Option<u32>,
     is_enterprise: bool,
 }
@@ -41,7 +43,7 @@ impl MeasuredConversion {
         let decided = company.decisions().iter().map(|decisions| (decisions.day, &decisions.changes));
         let mut days = decided
             .chain([(session.day(), &today)])
-            // A change at the start of the weeks applies to all their leads.
+            // A change at the start of the measured weeks applies to all leads in these weeks.
             .filter(|(day, _)| *day > start)
             .filter(|(_, changes)| {
                 changes.iter().any(|change| SETTINGS_JUDGED_BY_LEADS.contains(&change.setting.tool()))
@@ -56,7 +58,7 @@ impl MeasuredConversion {
         }
     }
 
-    /// Returns the measured share of leads, or `None` without leads.
+    /// Returns the share of leads that took a plan, or `None` if there are no leads.
     pub fn share(&self) -> Option<f64> {
         (self.leads > 0).then(|| f64::from(self.taken) / f64::from(self.leads))
     }

@@ -38,17 +38,18 @@ pub struct BehaviorMeasures {
     pub survival_days: u32,
     /// Final or current cash, dollars.
     pub cash: f64,
-    /// Share of advertising spending on each group's best channel; `None` without advertising.
+    /// Share of advertising spending on each group's best channel; `None` if there was no advertising.
     pub channels: Option<BestTriedChannelSpend>,
-    /// Targeted share of development spending; `None` without development spending.
+    /// Targeted share of development spending; `None` if there was no development spending.
     pub targeted_development: Option<f64>,
     /// Scores of the forecasts, by horizon.
     pub forecasts: Vec<ForecastScore>,
-    /// Number of weeks with naive forecasts, and number of all weeks.
+    /// Number of weeks with naive forecasts, and total number of weeks.
     pub filled_naively: (u32, u32),
     /// Scores of the forecasts that were filed before the first four weeks, by horizon.
     pub first_forecasts: Vec<ForecastScore>,
-    /// Share of advertising spending on the truly best channels. `None` for unfinished runs and without advertising.
+    /// Share of advertising spending on the truly best channels; `None` if the run is unfinished or had no
+    /// advertising.
     pub truly_best: Option<TrueBestChannelSpend>,
     /// Number and distribution of tool calls.
     pub tools: ToolUse,
@@ -91,7 +92,7 @@ pub const MIN_CHANNEL_LEADS: f64 = 3.0;
 pub struct BestChannel {
     /// Name of the best channel.
     pub channel: String,
-    /// Leads per thousand dollars on this channel.
+    /// Number of leads per thousand dollars spent on this channel.
     pub leads_per_thousand: f64,
     /// Share of the group's advertising spending on this channel.
     pub share: f64,
@@ -106,15 +107,16 @@ pub struct GroupAds {
     pub tried: usize,
     /// Advertising spending on the group, dollars.
     pub spend: f64,
-    /// The best channel with spending. `None` if only one channel has spending, or if the best channel has fewer than
-    /// three leads.
+    /// The best channel among those with spending; `None` if only one channel has spending, or if the best
+    /// channel has fewer than three leads.
     pub best: Option<BestChannel>,
 }
 
 /// Shares of advertising spending on the best channels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BestTriedChannelSpend {
-    /// Share of spending on the best channel, over all groups with a best channel. `None` if no group has a best channel.
+    /// Share of spending on the best channel, over all groups that have a best channel; `None` if no group
+    /// has one.
     pub share: Option<f64>,
     /// Advertising results by group, highest spending first.
     pub groups: Vec<GroupAds>,
@@ -168,14 +170,15 @@ fn best_channel(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
 /// at the start of the run, which is hidden from players.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrueBestChannelSpend {
-    /// Share of all advertising spending on the truly best channel of the advertised group. Random spending reaches one fifth.
+    /// Share of all advertising spending that went to the truly best channel of the advertised group; about
+    /// one fifth if spending is random.
     pub share: f64,
     /// Share of spending on the truly best channel, by group.
     pub groups: BTreeMap<String, f64>,
 }
 
-/// Returns the share of advertising spending on the truly best channels. `None` without advertising, or if the best
-/// channel of a group is unknown.
+/// Returns the share of advertising spending on the truly best channels. Returns `None` if there was no
+/// advertising or if the best channel of a group is unknown.
 pub fn true_best_channel_share(
     rows: &[ChannelRow],
     best: impl Fn(Group) -> Option<Channel>,
@@ -192,7 +195,7 @@ pub fn true_best_channel_share(
     (all > 0.0).then(|| TrueBestChannelSpend { share: on_best / all, groups: shares.collect() })
 }
 
-/// Number of first weeks whose forecasts are scored separately.
+/// Number of weeks at the start of a run whose forecasts are scored separately.
 pub const FIRST_WEEK_COUNT: usize = 4;
 
 /// Returns the scores of forecasts that were filed before the first four weeks, by horizon.
@@ -205,7 +208,8 @@ pub fn first_forecast_scores(journal: &[JournalEntry], cash_by_day: &[f64]) -> V
     horizons.into_iter().map(|horizon| ForecastScore::from_forecasts(horizon, &first)).collect()
 }
 
-/// Returns the targeted share of development spending over the simulated days, or `None` without development spending.
+/// Returns the targeted share of development spending over the simulated days, or `None` if there was no
+/// development spending.
 pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
     let mut general = 0.0;
     let mut targeted: BTreeMap<Group, f64> = BTreeMap::new();
@@ -237,12 +241,13 @@ pub struct ToolUse {
     pub per_week: f64,
     /// Number of calls by tool, most used first.
     pub tools: Vec<(String, u32)>,
-    /// Evenness of the calls over the tools that were used, from 0 to 1; `None` with fewer than two tools.
+    /// Evenness of the calls over the tools that were used, from 0 to 1; `None` if fewer than two tools were
+    /// used.
     pub evenness: Option<f64>,
 }
 
-/// Returns the entropy of the counts divided by the entropy of equal counts: 1 for equal counts, near 0 if one count
-/// dominates. `None` with fewer than two positive counts.
+/// Returns the entropy of the counts divided by the entropy of equal counts: 1 for equal counts, near 0 if
+/// one count dominates. Returns `None` if there are fewer than two positive counts.
 pub fn normalized_entropy(counts: &[u32]) -> Option<f64> {
     let all: f64 = counts.iter().map(|count| f64::from(*count)).sum();
     let used = counts.iter().filter(|count| **count > 0);
@@ -305,7 +310,7 @@ impl WordCounts {
         }
     }
 
-    /// Returns the number of planning words per hundred words, or `None` without words.
+    /// Returns the number of planning words per hundred words, or `None` if there are no words.
     pub fn planning_per_hundred(&self) -> Option<f64> {
         (self.words > 0).then(|| 100.0 * self.planning as f64 / self.words as f64)
     }
@@ -352,7 +357,8 @@ pub fn planning_measures(journal: &[JournalEntry]) -> PlanningMeasures {
     PlanningMeasures { rationales, words_each: each(all.words), planning_each: each(all.planning) }
 }
 
-/// Returns the number of weeks with naive forecasts that end within the run, and the number of all weeks.
+/// Returns the number of weeks with at least one naive forecast that is due within the run, and the total
+/// number of weeks.
 pub fn naive_forecast_weeks(journal: &[JournalEntry], last_day: u32) -> (u32, u32) {
     let filed = journal.iter().filter_map(|entry| match entry {
         JournalEntry::Advance { day, forecasts, filled_naively, rationale: _ } => {

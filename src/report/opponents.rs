@@ -1,4 +1,4 @@
-//! Results of strong policies with the same seed and scenario as a finished run.
+//! Results of strong policies that play the same seed and scenario as a finished run.
 
 use std::path::Path;
 
@@ -32,8 +32,8 @@ pub struct OpponentResults {
     pub policies: Vec<OpponentResult>,
 }
 
-/// Plays the opponents of the run in a folder while the callback returns `true`. Returns `None` if the callback
-/// stopped the simulation.
+/// Plays the opponents of the run in a folder for as long as the callback returns `true`. Returns `None` if
+/// the callback stopped the simulation.
 pub type PlayOpponentsFn =
     fn(&Path, &Configuration, &(dyn Fn() -> bool + Sync)) -> Result<Option<OpponentResults>, Rejection>;
 

@@ -71,7 +71,7 @@ fn result_facts(report: &RunReport) -> Vec<NamedValue> {
     let last_day = format_whole(f64::from(seen.last_day));
     let most = report.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = report.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
-    // The runway does not follow from the cash change since the start.
+    // The runway cannot be derived from the cash change since the start, so it is shown separately.
     let runway = match seen.ended {
         Some(_) => String::new(),
         None => describe_runway(&seen.runway),

@@ -98,7 +98,7 @@ pub struct Chart {
     pub x_label: &'static str,
     /// Whether values are dollars.
     pub is_in_dollars: bool,
-    /// Limits of the vertical axis, if outliers would flatten the other values.
+    /// Limits of the vertical axis; `None` unless outliers would flatten the other values.
     pub y_limits: Option<(f64, f64)>,
     /// Data of the chart as lines or stacked bars.
     pub plot: Plot,
@@ -137,7 +137,7 @@ pub struct Curve {
 pub struct Band {
     /// Name of the interval in the legend.
     pub name: String,
-    /// Position, lower end and upper end of the interval.
+    /// Position, lower endpoint and upper endpoint of the interval.
     pub points: Vec<(f64, f64, f64)>,
 }
 

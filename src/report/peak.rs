@@ -1,14 +1,14 @@
-//! Projected peak usage of next week: usage on the busiest day of the last week, multiplied by the growth since the
-//! week before. Every text labels the value as a projection.
+//! Projected peak usage of next week: usage on the busiest day of the last week, multiplied by its growth
+//! since the week before. Every text states that the value is a projection.
 
 use super::formatting::format_whole;
 use novamind_base::formatting::percent;
 use novamind_record::figures::WeekFigures;
 
-/// Usage of the busiest day of the last week, and its growth since the week before.
+/// Usage on the busiest day of the last week, and the growth of this usage since the week before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakProjection {
-    /// Usage of the busiest day of the last week, units.
+    /// Usage on the busiest day of the last week, units.
     pub peak_usage: f64,
     /// Ratio of `peak_usage` to the usage on the busiest day of the week before.
     pub growth: f64,
@@ -30,9 +30,8 @@ impl PeakProjection {
         self.peak_usage * self.growth
     }
 
-    /// Compares the projected peak with a capacity tier: `at last week's growth (+12%), next week's peak is 61,000
-    /// units, 76% of
-    /// tier 1`.
+    /// Compares the projected peak with a capacity tier: `at last week's growth (+12%), next week's peak is
+    /// 61,000 units, 76% of tier 1`.
     pub fn describe(&self, tier: u32, units: f64) -> String {
         let share = percent(self.next_peak() / units.max(1.0), 0);
         format!(

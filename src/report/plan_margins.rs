@@ -1,7 +1,7 @@
-//! Gross margins of plans: subscription revenue compared with the compute cost of usage, on every model tier. The
-//! product screen, forms and plain mode use the same definition. Compute cost is the usage of the last day multiplied
-//! by 30 days. Revenue is the monthly price of the subscriptions that could use the product on the last day.
-//! Subscriptions that started on the last day have no usage yet.
+//! Gross margins of plans: subscription revenue compared with the compute cost of usage, on every model tier.
+//! The Product screen, forms and plain mode use the same definition. Compute cost is the cost of the last
+//! day's usage multiplied by 30. Revenue is the monthly price of the subscriptions that could use the product
+//! on the last day. Subscriptions that started on the last day have no usage yet.
 
 mod sentences;
 
@@ -29,15 +29,15 @@ pub struct PlanUsage {
     pub customers: f64,
     /// Number of seats of the active subscriptions.
     pub seats: f64,
-    /// Revenue of the active subscriptions, dollars a month.
+    /// Revenue of the active subscriptions, dollars per month.
     pub monthly_revenue: f64,
-    /// Number of subscriptions with measured usage, which could use the product on the last day.
+    /// Number of subscriptions with measured usage: those that could use the product on the last day.
     pub measured_subscriptions: f64,
     /// Number of seats of the subscriptions with measured usage.
     pub measured_seats: f64,
     /// Measured usage on the last day, units.
     pub measured_units: f64,
-    /// Revenue of the subscriptions with measured usage, dollars a month.
+    /// Revenue of the subscriptions with measured usage, dollars per month.
     pub measured_revenue: f64,
 }
 
@@ -54,12 +54,12 @@ impl PlanUsage {
         }
     }
 
-    /// Returns the usage in units per seat per day, or `None` without measured usage.
+    /// Returns the usage in units per seat per day, or `None` if no usage was measured.
     pub fn units_per_seat(&self) -> Option<f64> {
         (self.measured_seats > 0.0).then(|| self.measured_units / self.measured_seats)
     }
 
-    /// Returns the compute cost in dollars per seat per month. `unit_cost` is in dollars a unit.
+    /// Returns the compute cost in dollars per seat per month. `unit_cost` is in dollars per unit.
     pub fn compute_cost(&self, unit_cost: f64) -> Option<f64> {
         self.units_per_seat().map(|usage| usage * DAYS_PER_MONTH * unit_cost)
     }
@@ -77,12 +77,12 @@ impl PlanUsage {
         self.revenue_per_seat().filter(|_| self.units_per_seat().is_some())
     }
 
-    /// Returns the share of revenue that is left after compute. `unit_cost` is in dollars a unit.
+    /// Returns the share of revenue that is left after compute. `unit_cost` is in dollars per unit.
     pub fn margin(&self, unit_cost: f64) -> Option<f64> {
         margin(self.revenue_per_seat()?, self.compute_cost(unit_cost)?)
     }
 
-    /// Returns the margin if every customer uses the full quota. `quota` is in units a day.
+    /// Returns the margin if every customer uses the full quota. `quota` is in units per day.
     fn margin_at_full_quota(&self, quota: f64, unit_cost: f64) -> Option<f64> {
         let full = PlanUsage { measured_units: self.measured_subscriptions * quota, ..*self };
         full.margin(unit_cost)
@@ -114,7 +114,8 @@ impl PlanSales {
         Ok(sales)
     }
 
-    /// Sets the subscribers from a query result with the columns group, plan, customers, seats and dollars a month.
+    /// Sets the subscribers from a query result with the columns group, plan, customers, seats and dollars
+    /// per month.
     pub fn set_subscribers(&mut self, rows: &QueryResult) {
         self.subscribed = by_plan(rows, |row| PlanUsage {
             customers: number_at(row, 2),
@@ -124,7 +125,8 @@ impl PlanSales {
         });
     }
 
-    /// Sets the usage from a query result with the columns group, plan, subscriptions, seats, units and dollars a month.
+    /// Sets the usage from a query result with the columns group, plan, subscriptions, seats, units and
+    /// dollars per month.
     pub fn set_usage(&mut self, rows: &QueryResult) {
         self.used = by_plan(rows, |row| PlanUsage {
             measured_subscriptions: number_at(row, 2),
@@ -175,7 +177,8 @@ pub struct DraftPlanTerms {
 }
 
 impl DraftPlanTerms {
-    /// Returns the compute cost in dollars a unit on the current model tier, or `None` if the tier is unknown.
+    /// Returns the compute cost in dollars per unit on the current model tier, or `None` if the tier is
+    /// unknown.
     fn unit_cost(&self, models: &[(u8, f64)]) -> Option<f64> {
         models.iter().find(|(tier, _)| *tier == self.tier).map(|(_, unit_cost)| *unit_cost)
     }
@@ -203,7 +206,7 @@ impl MarginSetting {
         }
     }
 
-    /// Returns the terms of the plans after a tool call with these arguments.
+    /// Returns the terms of the plans that a tool call with these arguments would set.
     pub fn apply(self, mut terms: ByPlan<DraftPlanTerms>, arguments: &Value) -> ByPlan<DraftPlanTerms> {
         for plan in Plan::ALL {
             let Some(value) = arguments.get(plan.id()).and_then(Value::as_f64) else { continue };
@@ -328,7 +331,7 @@ fn describe_groups(
     })
 }
 
-/// Formats a margin. A loss above about ten times the price is shown as `loss`.
+/// Formats a margin. A loss of more than about ten times the price is shown as `loss`.
 fn format_margin(margin: Option<f64>) -> String {
     margin.map_or("–".to_owned(), |margin| match margin < -9.99 {
         true => "loss".to_owned(),

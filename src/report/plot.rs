@@ -61,7 +61,7 @@ pub fn sparkline_char(share: f64) -> char {
     SPARKLINE_CHARS[((share * highest as f64).round() as usize).min(highest)]
 }
 
-/// A series of points that is drawn with one character. Later series cover earlier series.
+/// A series of points that is drawn with one character. A later series covers earlier ones.
 pub struct PlotSeries<'a> {
     /// Character with which the points are drawn.
     pub mark: char,
@@ -143,7 +143,8 @@ fn interpolate(from: f64, to: f64, share: f64) -> f64 {
     from + (to - from) * share
 }
 
-/// Returns the range of the values, or `None` without values. If all values are equal, the range is widened.
+/// Returns the range of the values, or `None` if there are no values. If all values are equal, the range is
+/// widened.
 fn padded_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (min, max) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), value| (min.min(value), max.max(value)));

@@ -1,5 +1,5 @@
-//! Formats text with simple Markdown for screens: headings, lists, emphasis, quotes and code blocks. Line breaks of
-//! the source become spaces, and no word is lost.
+//! Formats simple Markdown for screens: headings, lists, emphasis, quotes and code blocks. Line breaks in the
+//! source become spaces, and every word is kept.
 
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
@@ -14,7 +14,7 @@ pub enum TextStyle {
     Heading,
 }
 
-/// A line of text as segments with a style.
+/// A line of text that consists of segments, each with its style.
 pub type ProseLine = Vec<(String, TextStyle)>;
 
 /// A block element of a Markdown text.
@@ -129,7 +129,8 @@ fn parse_blocks(text: &str) -> Vec<MarkdownBlock> {
     blocks
 }
 
-/// Returns the block element that starts with this line, determined by the first characters. Returns `None` for ordinary text.
+/// Returns the block element that starts with this line, as determined by its first characters. Returns
+/// `None` for ordinary text.
 fn block_at_line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
     if bare.is_empty() {
         return Some(MarkdownBlock::Blank);
@@ -157,7 +158,7 @@ fn block_at_line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
     numbered.map(|text| MarkdownBlock::Item(format!("{margin}{}. ", &bare[..digits]), text.trim().to_owned()))
 }
 
-/// Returns the characters of a text without emphasis marks, each character with its style.
+/// Returns the characters of a text, each with its style. Omits emphasis marks.
 fn styled_chars(text: &str) -> Vec<(char, TextStyle)> {
     let characters: Vec<char> = text.chars().collect();
     let mut found = Vec::new();

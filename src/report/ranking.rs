@@ -35,7 +35,7 @@ pub struct PublishedTable {
     pub date: String,
     /// Generation of the simulator that the agents played.
     pub generation: PublishedGeneration,
-    /// What is known about the generation, and how.
+    /// What is known about the generation, and on what basis.
     pub basis: String,
     /// Published results of each agent.
     pub agent: Vec<PublishedAgent>,
@@ -50,7 +50,7 @@ pub enum PublishedGeneration {
     /// Release 2.
     #[serde(rename = "release 2")]
     Release2,
-    /// The source does not state the generation, and its date does not decide.
+    /// The source does not state the generation, and its date does not determine it.
     #[default]
     #[serde(rename = "not stated")]
     NotStated,
@@ -98,8 +98,8 @@ pub struct PublishedAgent {
     /// Targeted share of development spending, if published.
     #[serde(default)]
     pub targeted_development_share: Option<f64>,
-    /// Last day of the agent's best run, or of all runs if all went bankrupt; `None` if not published. The published
-    /// cash is that of day 500.
+    /// Last day of the agent's best run, or of all runs if all of them went bankrupt; `None` if not
+    /// published. The published cash is the cash of day 500.
     #[serde(default)]
     pub horizon_days: Option<u32>,
     /// Generation of the simulator that the agent played.
@@ -119,13 +119,14 @@ impl PublishedResults {
         &self.table[0]
     }
 
-    /// Returns the table among which runs of a generation are ranked, or `None` if no results of the generation are
-    /// published.
+    /// Returns the table whose results runs of a generation are ranked against, or `None` if no results of
+    /// the generation are published.
     pub fn table_of(&self, generation: Generation) -> Option<&PublishedTable> {
         self.table.iter().find(|table| table.generation == generation.into())
     }
 
-    /// Returns the results without a stated generation that no other table contains. No run is ranked among them.
+    /// Returns the results that have no stated generation and that no other table contains. No run is ranked
+    /// among them.
     pub fn unranked_agents(&self) -> impl Iterator<Item = &PublishedAgent> {
         let agents = || self.table.iter().flat_map(|table| &table.agent);
         let is_unranked = |agent: &PublishedAgent| agent.generation == PublishedGeneration::NotStated;
@@ -150,7 +151,7 @@ impl PublishedResults {
 }
 
 impl PublishedTable {
-    /// Describes the last days of the table's runs: `497 or 504`.
+    /// Lists the different last days of the table's runs: `497 or 504`.
     pub fn describe_horizons(&self) -> String {
         let mut horizons: Vec<u32> = self.agent.iter().filter_map(|agent| agent.horizon_days).collect();
         horizons.sort_unstable();
@@ -218,9 +219,10 @@ pub struct Ranking {
     pub entries: Vec<RankedResult>,
     /// Rank of the run, counted from 1; `None` if the run is not ranked.
     pub rank: Option<usize>,
-    /// Reasons why the run is not ranked. Empty if the run is ranked, or will be ranked as soon as the run has a score.
+    /// Reasons why the run is not ranked; empty if the run is ranked, or will be ranked as soon as it has a
+    /// score.
     pub obstacles: Vec<RankingObstacle>,
-    /// Seed and length of the published runs, if the run has a different seed.
+    /// Seed and length of the published runs; `None` unless the run has a different seed.
     pub caveat: Option<String>,
     /// Source of the published results; `None` if no results of the generation are published.
     pub source: Option<String>,
@@ -283,14 +285,14 @@ pub fn rank_score(score: Option<f64>, seen: &Observation) -> Ranking {
     }
 }
 
-/// Compares two results, given as cash and days survived: by cash, then by survival. The published tables select an
-/// agent's best run in the same way. The cash of a bankrupt company is 0.
+/// Compares two results, given as cash and days survived: by cash, then by survival. The published tables
+/// also select an agent's best run by this order. The cash of a bankrupt company is 0.
 pub fn compare_results(one: (f64, u32), other: (f64, u32)) -> Ordering {
     one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
 }
 
-/// Returns the number of published best runs of a generation that ended with less cash, and the number of all its
-/// published best runs. Returns `None` if no results of the generation are published.
+/// Returns the number of published best runs of a generation that ended with less cash, and the total number
+/// of its published best runs. Returns `None` if no results of the generation are published.
 pub fn count_published_below(cash: f64, generation: Generation) -> Option<(usize, usize)> {
     let agents = &published_results().table_of(generation)?.agent;
     Some((agents.iter().filter(|agent| agent.best_cash < cash).count(), agents.len()))
@@ -401,7 +403,8 @@ mod tests {
                 assert!(!agent.source.is_empty(), "{}", agent.name);
                 assert_eq!((agent.date.len(), &agent.date[..5]), (10, "2026-"), "{}", agent.name);
                 assert_eq!(agent.generation, table.generation, "{}", agent.name);
-                // Published cash is that of day 500: the runs ended within a week of day 500.
+                // Published cash is the cash of day 500, so the runs must have ended within a week of day
+                // 500.
                 let is_known = agent.horizon_days.is_some_and(|days| [497, 504].contains(&days));
                 assert!(is_known || agent.name == "Grok 4.5", "{}", agent.name);
             }

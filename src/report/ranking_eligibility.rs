@@ -9,11 +9,11 @@ use novamind_record::folder::runs::RunSummary;
 use novamind_record::mode::Mode;
 use novamind_session::{Generation, HorizonRule, Observation};
 
-/// Day of which the cash is published.
+/// Day whose cash is published.
 pub const PUBLISHED_DAYS: u32 = 500;
 
-/// Last day of most published runs, whose agents' programs play whole weeks. Their last cash counts as the cash of
-/// [`PUBLISHED_DAYS`].
+/// Last day of most published runs. The programs of the agents play only whole weeks. The last cash of these
+/// runs counts as the cash of [`PUBLISHED_DAYS`].
 pub const PUBLISHED_WHOLE_WEEKS: u32 = 497;
 
 /// Seed of the published runs.
@@ -44,7 +44,8 @@ pub struct RankingCriteria<'a> {
     pub is_lesson: bool,
     /// Whether the run is a branch. The player may know how the parent run ended.
     pub is_branch: bool,
-    /// Whether the run was played by a person in debug mode, which shows hidden state. Policies have no access to hidden state.
+    /// Whether a person played the run in debug mode, which shows hidden state. Policies have no access to
+    /// hidden state.
     pub showed_hidden_state: bool,
 }
 
@@ -97,11 +98,12 @@ impl<'a> RankingCriteria<'a> {
         }
     }
 
-    /// Returns whether the last day and the calendar of competitor events equal those of published runs.
+    /// Returns whether the run has the same last day and the same calendar of competitor events as published
+    /// runs.
     fn has_published_length(&self) -> bool {
         match self.days {
             PUBLISHED_DAYS => true,
-            // A rounded-up run of 497 days can be scaled by a smaller length.
+            // The calendar of a run that was rounded up to 497 days can be scaled by a smaller length.
             PUBLISHED_WHOLE_WEEKS => self.horizon_rule != HorizonRule::WholeWeeksAbove,
             _ => false,
         }
@@ -147,13 +149,16 @@ impl<'a> RankingCriteria<'a> {
 pub enum RankingObstacle {
     /// The run belongs to a lesson.
     Lesson,
-    /// Generation of the run, of which no results are published.
+    /// No results of the run's generation are published. The value is this generation.
     Generation(Generation),
-    /// Number of days of the run, which differs from the length of the published runs.
+    /// The length of the run differs from the length of the published runs. The value is the run's number of
+    /// days.
     Length(u32),
-    /// Starting cash of the run in dollars, which differs from the starting cash of the published runs.
+    /// The starting cash of the run differs from the starting cash of the published runs. The value is in
+    /// dollars.
     StartCash(f64),
-    /// Name of the run's scenario, whose rules differ from the rules of the published runs.
+    /// The rules of the run's scenario differ from the rules of the published runs. The value is the
+    /// scenario's name.
     Scenario(String),
     /// Parameters of the scenario were changed.
     Parameters,
@@ -211,8 +216,8 @@ pub fn describe_obstacles(obstacles: &[RankingObstacle]) -> String {
     obstacles.iter().map(RankingObstacle::describe).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the number of runs with obstacles and a text with the reasons. The text lists the reasons of a single run,
-/// or counts reasons by kind. Returns `None` if no run has an obstacle.
+/// Returns the number of runs with obstacles, and a text with the obstacles. The text lists the obstacles of
+/// a single run, or counts the obstacles of several runs by kind. Returns `None` if no run has an obstacle.
 pub fn describe_unranked_runs(runs: &[Vec<RankingObstacle>]) -> Option<(usize, String)> {
     let left_out: Vec<&Vec<RankingObstacle>> =
         runs.iter().filter(|obstacles| !obstacles.is_empty()).collect();
@@ -308,7 +313,7 @@ mod tests {
             let obstacles = RankingCriteria::from_observation(&seen).obstacles();
             let expected = match seen.generation {
                 Generation::Release1 => vec![],
-                // Only published results are missing.
+                // The only obstacle is that no results are published.
                 Generation::Release2 => vec![RankingObstacle::Generation(Generation::Release2)],
             };
             assert_eq!(obstacles, expected, "{scenario}");

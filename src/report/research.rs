@@ -1,4 +1,5 @@
-//! Text for R&D projects: expected duration and gain before purchase, and projects that finish too late.
+//! Text for R&D projects: the expected duration and gain of a project before its purchase, and projects that
+//! finish too late.
 
 use serde_json::Value;
 
@@ -57,12 +58,14 @@ fn format_whole_percent(share: f64) -> String {
     }
 }
 
-/// Formats the mean duration of a tier in whole days: `39`, or `≥30` if only a lower bound is known.
+/// Formats the mean duration of a tier's projects in whole days: `39`, or `≥30` if only a lower bound is
+/// known.
 pub fn format_mean_days(means: &ResearchMeans) -> String {
     format!("{}{}", if means.are_lower_bounds { "≥" } else { "" }, grouped_number(means.days, 0))
 }
 
-/// Formats the mean gain of a tier in quality: `+0.0402`, or `≥0.0400` if only a lower bound is known.
+/// Formats the mean quality gain of a tier's projects: `+0.0402`, or `≥0.0400` if only a lower bound is
+/// known.
 pub fn format_mean_gain(means: &ResearchMeans, decimals: usize) -> String {
     format!("{}{:.decimals$}", if means.are_lower_bounds { "≥" } else { "+" }, means.gain)
 }

@@ -56,7 +56,8 @@ pub struct RunReport {
 }
 
 impl RunReport {
-    /// Collects the data of a run up to the current day. Queries the database, so it must not be called on the drawing thread.
+    /// Collects the data of a run up to the current day. Must not be called on the drawing thread, because it
+    /// queries the database.
     pub fn from_session(session: &Session) -> RunReport {
         let seen = session.company().observe();
         let start_cash = session.manifest().cash;

@@ -46,7 +46,8 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// Creates a scale over values with about `steps` steps. The range is widened to round ends if `round_ends` is set.
+    /// Creates a scale over values with about `steps` steps. If `round_ends` is set, the range is widened to
+    /// round endpoints.
     pub(super) fn new(values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
         let (mut from, mut to) = values
             .filter(|value| value.is_finite())
@@ -125,7 +126,7 @@ impl PlotLayout {
     }
 }
 
-/// Draws a chart as SVG for a page; `number` makes its element IDs unique.
+/// Draws a chart as SVG for a page. The element IDs contain `number`, so that they are unique on the page.
 pub fn draw(chart: &Chart, number: usize) -> String {
     let (inside, height) = draw_plot(chart, REPORT_AXES);
     format!(
@@ -139,7 +140,7 @@ pub fn draw(chart: &Chart, number: usize) -> String {
 /// Style sheet of a self-contained file, with plain colors that every SVG viewer supports.
 const STYLE: &str = include_str!("../../assets/chart.css");
 
-/// Draws charts below each other in one self-contained SVG file, without external scripts or fonts.
+/// Draws charts one below the other in one self-contained SVG file, without external scripts or fonts.
 pub fn standalone_svg(title: &str, parts: &[ScaledChart]) -> String {
     const HEADER_HEIGHT: f64 = 30.0;
     let (mut all, mut below) = (String::new(), 10.0);
@@ -555,7 +556,7 @@ mod tests {
         let heads: Vec<&str> =
             svg.lines().filter(|line| line.starts_with("<g transform=\"translate(0 ")).collect();
         assert_eq!(heads.len(), 4, "{svg}");
-        // Shares are labeled too: a linear axis is not restricted to whole numbers.
+        // A linear axis also has labels at fractions.
         assert!(svg.contains(">0.10<") || svg.contains(">0.1<"), "{svg}");
     }
 }

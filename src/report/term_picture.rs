@@ -1,5 +1,6 @@
-//! Small pictures that illustrate glossary terms with figures that the player can see. Without figures of a run,
-//! published parameters or an invented customer are used. No picture contains hidden values.
+//! Small pictures that illustrate glossary terms with figures that the player can see. If no figures of a run
+//! are available, a picture uses published parameters or an invented customer. No picture contains hidden
+//! values.
 
 use super::fit::{Fit, fits};
 use super::plot::{PlotSeries, plot_report};
@@ -11,7 +12,7 @@ use novamind_session::{DeliveredQuality, GroupWeek, Session};
 use novamind_tools::ParameterNumbers;
 
 const EXAMPLE_REPUTATION_CHANGE: f64 = 0.1;
-/// Number of weeks for which the remaining cohort is shown.
+/// Number of weeks for which the remaining share of a cohort is shown.
 const COHORT_WEEKS: u32 = 26;
 const MAX_BAR_WIDTH: f64 = 30.0;
 
@@ -25,7 +26,7 @@ pub struct VisibleFigures<'a> {
     pub fits: &'a [Fit],
     /// Delivered quality of every known group.
     pub quality: &'a [DeliveredQuality],
-    /// Base quality before any improvement, and the general bonus from development.
+    /// Base quality, and the general bonus from development.
     pub quality_base: (f64, f64),
     /// Parameters that the manual documents.
     pub numbers: &'a ParameterNumbers,
@@ -54,7 +55,7 @@ pub enum TermDrawing {
 pub struct TermLines {
     /// Name and points of each line. The name can be empty.
     pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
-    /// Shaded interval, as position, lower end and upper end.
+    /// Shaded interval, as position, lower endpoint and upper endpoint.
     pub band: Vec<(f64, f64, f64)>,
     /// Plans that are drawn as points, with their positions.
     pub plans: Vec<(Plan, f64, f64)>,
@@ -111,7 +112,7 @@ fn participation_curve() -> TermPicture {
     }
 }
 
-/// Compares the plans with the group of individuals that has the narrowest estimates.
+/// Compares the plans with the estimates of the group of individuals whose estimates are most precise.
 fn estimates_and_plans(fits: &[Fit]) -> TermPicture {
     let individuals = fits.iter().filter(|fit| !fit.group.is_enterprise());
     let Some(fit) =
@@ -138,7 +139,7 @@ fn estimates_and_plans(fits: &[Fit]) -> TermPicture {
     }
 }
 
-/// Draws the share of a cohort that remains after each week at last week's churn.
+/// Draws the share of a cohort that remains after each week if churn stays at last week's value.
 fn cohort_retention(weeks: &[WeekFigures]) -> TermPicture {
     let Some(churn) = last_week_churn(weeks) else {
         let caption = "Churn is unknown until a week that started with subscribers has run.".to_owned();
@@ -154,7 +155,7 @@ fn cohort_retention(weeks: &[WeekFigures]) -> TermPicture {
     }
 }
 
-/// Draws the share of a reputation change that reaches a group, by the influence between the groups.
+/// Draws how much of a reputation change reaches another group, by the influence of one group on the other.
 fn spillover(numbers: &ParameterNumbers) -> TermPicture {
     let value = |key| numbers.value(key);
     let both = value("reputation.cross_group_spillover_factor").zip(value("reputation.cross_delta_min_abs"));
@@ -174,7 +175,8 @@ fn spillover(numbers: &ParameterNumbers) -> TermPicture {
     }
 }
 
-/// Draws the base quality and the quality that was added. The share that competitors have copied is hidden.
+/// Draws the base quality and the added quality. The share that competitors have copied is not drawn, because
+/// it is hidden.
 fn quality_bank(seen: &VisibleFigures<'_>) -> TermPicture {
     let (base, shared) = seen.quality_base;
     let of_group = |delivered_quality: &DeliveredQuality| {

@@ -1,4 +1,4 @@
-//! Recorded runs that several tests share.
+//! Sample runs that several tests share.
 
 use serde_json::{Value, json};
 
@@ -7,7 +7,7 @@ use novamind_record::trajectory::record::Via;
 use novamind_record::trajectory::{Line, Trajectory};
 use novamind_session::{NewRun, Session, Storage};
 
-/// Plays a run in memory for the given number of weeks, with the decisions of a sensible beginner and one change in
+/// Plays a run in memory for the given number of weeks, with reasonable opening decisions and one change in
 /// the third week.
 pub fn play_weeks(weeks: usize) -> Session {
     play_run(200, 1_000_000.0, weeks, &opening_calls())

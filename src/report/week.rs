@@ -38,8 +38,8 @@ pub struct MovedFigure {
 }
 
 impl MovedFigure {
-    /// Formats the size of the change: percentage points for shares, otherwise percent of the previous value. Returns
-    /// `None` if the previous value was 0.
+    /// Formats the size of the change: in percentage points for shares, otherwise in percent of the previous
+    /// value. Returns `None` if the previous value was 0.
     pub fn format_size(&self) -> Option<String> {
         let (old, new) = (self.change.old, self.change.new);
         if self.is_share {
@@ -60,7 +60,8 @@ impl MovedFigure {
 pub struct WeekReport {
     /// Figures of the reported week.
     pub week: WeekFigures,
-    /// Lengths of this week and the previous week, if they differ. The last week of a run can be short.
+    /// Lengths of this week and the previous week; `None` if the lengths are equal. The last week of a run
+    /// can be short.
     pub short_week_note: Option<String>,
     /// Amounts by ledger category that add up to the cash change: income first, then costs from the largest.
     pub cash_components: Vec<(&'static str, f64)>,
@@ -76,7 +77,7 @@ pub struct WeekReport {
     pub comments: u32,
     /// Number of news items.
     pub news_items: u32,
-    /// Days on which a week was filed automatically because a time limit was reached.
+    /// Decision days of the weeks that were filed automatically because a time limit was reached.
     limit_days: Vec<u32>,
 }
 
@@ -200,7 +201,8 @@ pub struct WeekReportInput<'a> {
     pub journal: &'a [JournalEntry],
     /// Cash in dollars at the end of each day, day 0 first.
     pub cash_by_day: &'a [f64],
-    /// Days on which posts were published: customers' posts, comments on the company's posts, and news items.
+    /// Publication days of customers' posts, of comments on the company's posts, and of news items, in this
+    /// order.
     pub posts: [&'a [u32]; 3],
 }
 
@@ -210,7 +212,8 @@ impl WeekReport {
         let has_authors = session.params().fidelity.interface == Interface::Release1;
         let mut posts: [Vec<u32>; 3] = Default::default();
         for post in session.company().posts() {
-            // News items have no customer group. Release 2 does not publish authors, so its posts count together.
+            // News items have no customer group. In release 2, the authors of posts are not published, so
+            // customers' posts and news items are counted together.
             let kind = match (post.own_post, &post.written_by) {
                 (Some(_), _) => 1,
                 (None, None) if has_authors => 2,
@@ -265,8 +268,8 @@ fn describe_unequal_weeks(weeks: &[WeekFigures]) -> Option<String> {
     describe_short_week(week_figures.days_run, before.days_run)
 }
 
-/// Returns the day of a journal entry for a week that was filed automatically at a time limit. Returns `None` for
-/// other entries.
+/// Returns the decision day of a week that was filed automatically at a time limit, or `None` if the journal
+/// entry is a different one.
 fn day_filed_at_limit(entry: &JournalEntry) -> Option<u32> {
     match entry {
         JournalEntry::Advance { day, rationale, filled_naively: [true, true, true, true], .. }
@@ -288,7 +291,8 @@ fn cash_components(booked: &CategoryTotals) -> Vec<(&'static str, f64)> {
     parts
 }
 
-/// Describes the decisions of a range of days: before a week, and between the days of the week if the days were run one by one.
+/// Describes the decisions of a range of days: the decisions before a week, and the decisions between its
+/// days if the days were run one by one.
 fn describe_decisions(sources: &WeekReportInput<'_>, days: Range<u32>) -> Vec<String> {
     let found = sources.decisions.iter().filter(|decided| days.contains(&decided.day));
     found

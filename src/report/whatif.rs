@@ -15,7 +15,8 @@ use novamind_record::figures::FigureUnit;
 use novamind_session::EnterpriseNames;
 use novamind_tools::{ToolId, ToolKind, find};
 
-// Name of the branch without edits. Its simulation can continue beyond the end of the record, with unchanged settings.
+// Name of the branch that has no edits. Its simulation can continue beyond the end of the record, with
+// unchanged settings.
 const UNCHANGED_BRANCH_NAME: &str = "your decisions unchanged";
 
 /// Returns the name of a branch, which lists its edits.
@@ -26,12 +27,12 @@ pub fn branch_name(edits: &[DecisionEdit]) -> String {
     }
 }
 
-/// How text names decisions.
+/// How decisions are named in text.
 #[derive(Clone, Copy)]
 pub enum DecisionNotation<'a> {
-    /// Tool calls with their line numbers, as edits of plain mode name them.
+    /// As tool calls with their line numbers, as in the edits of plain mode.
     Calls,
-    /// Names and values in words.
+    /// As names and values in words.
     Words(&'a EnterpriseNames),
 }
 
@@ -104,8 +105,8 @@ fn unplayed_weeks(comparison: &BranchComparison, days_per_week: u32) -> Option<S
     })
 }
 
-/// Describes a branch by its number, its name and the first day on which it differs from the unchanged run. The line of
-/// the unchanged run names the weeks that were not played.
+/// Describes a branch by its number, its name and the first day on which it differs from the unchanged run.
+/// For the unchanged run, the line names the weeks that were not played instead of a day.
 pub fn branch_line(comparison: &BranchComparison, number: usize, name: &str, days_per_week: u32) -> String {
     let Some(branch) = comparison.branches.get(number) else { return String::new() };
     let since = match (branch.first_different_day, branch.edits.is_empty()) {
@@ -217,7 +218,8 @@ fn describe_call_difference(call: &CallDifference, notation: DecisionNotation<'_
     }
 }
 
-/// Returns the number of the week after which figures are shown. Marks the week if the record ends before its end.
+/// Returns the number of the week after which figures are shown. Marks the week if the record ends before the
+/// end of this week.
 pub fn milestone_label(comparison: &BranchComparison, day: u32, days_per_week: u32) -> String {
     let mark = if day > comparison.recorded_until { " not played" } else { "" };
     format!("{}{mark}", day.div_ceil(days_per_week))
@@ -285,7 +287,7 @@ pub fn comparison_cell_lines(
     [format_figure(figure.unit(), value), more]
 }
 
-/// Describes the number of futures and the day after which random draws are new.
+/// Describes the number of futures, and the day after which their random draws differ from the run's.
 pub fn futures_heading(futures: &Futures) -> String {
     format!(
         "{} with new random draws after day {}; median, and in brackets the 10th to 90th percentile",
@@ -294,8 +296,8 @@ pub fn futures_heading(futures: &Futures) -> String {
     )
 }
 
-/// Describes the number of futures of a branch that end in bankruptcy, and how their figures are counted. Returns
-/// `None` without bankruptcies.
+/// Describes the number of futures of a branch that end in bankruptcy, and how the figures of these futures
+/// are counted. Returns `None` if no future ends in bankruptcy.
 pub fn describe_bankruptcies(futures: &Futures, branch: usize) -> Option<String> {
     let ended = futures.bankruptcy_count(branch);
     (ended > 0).then(|| {

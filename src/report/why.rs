@@ -20,7 +20,7 @@ pub struct CauseLine {
     pub amount: f64,
     /// Formatted contribution with its sign.
     pub amount_text: String,
-    /// Inputs of the cause that differ, with old and new values.
+    /// Inputs of the cause that differ between the two weeks, with old and new values.
     pub details: Vec<String>,
 }
 

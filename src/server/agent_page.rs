@@ -1,7 +1,8 @@
 //! Instructions for an agent: a page that describes goal, rules and requests, and the documentation of tools and tables.
 //!
-//! The instructions are generated from the catalog and the current parameters. The page contains the same information as the
-//! instructions of the benchmark, without hidden state and without advice on how to play well.
+//! The instructions are generated from the catalog and the current parameters. The page contains the same
+//! information as the instructions of the benchmark. It contains no hidden state and no advice on how to play
+//! well.
 
 use std::path::Path;
 
@@ -19,7 +20,7 @@ const PAGE: &str = include_str!("../../assets/agent/page.md");
 const SHELL: &str = include_str!("../../assets/agent/shell.md");
 const ERRORS: &str = include_str!("../../assets/agent/errors.md");
 
-/// The heading of the page section that follows goal, calendar and rules.
+/// Heading of the section that follows the goal, the calendar and the rules.
 const HOW_TO_CALL: &str = "## How to call";
 
 /// File name of the instructions.

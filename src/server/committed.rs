@@ -9,7 +9,7 @@ use super::request_handler::game_status;
 use novamind_record::clock::{now, parse_seconds};
 use novamind_session::Session;
 
-/// The state of a run after the last executed request. Reading it does not wait for the session.
+/// The state of a run after the last executed request. Readers do not wait for the session.
 #[derive(Clone)]
 pub struct CommittedState(Arc<Mutex<State>>);
 
@@ -29,7 +29,7 @@ impl State {
         state
     }
 
-    /// Replaces the state. Keeps the dashboard of the last week, which is rendered once for each week.
+    /// Replaces the state. The dashboard is rendered only once a week.
     fn update(&mut self, session: &Session) {
         let mut status = game_status(session).body;
         status["snapshot_at"] = json!(parse_seconds(&now()));

@@ -13,8 +13,8 @@ struct RunningRequest {
     interrupt: Interrupt,
 }
 
-/// The running request and its interrupt. When the server shuts down, a running week is still simulated to its end,
-/// but the week's calculations are stopped.
+/// The running request and its interrupt. If the server shuts down during a week, the week is still simulated
+/// to its end, but the week's calculations are stopped.
 #[derive(Clone, Default)]
 pub(super) struct CurrentRequest(Arc<Mutex<Option<RunningRequest>>>);
 
@@ -49,7 +49,7 @@ impl CurrentRequest {
     }
 }
 
-/// A guard that stops a request if the client no longer waits for the response.
+/// A guard that stops a request if the client no longer waits for its response.
 pub(super) struct RequestWatch {
     running: CurrentRequest,
     number: u64,

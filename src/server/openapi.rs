@@ -61,7 +61,7 @@ fn paths(numbers: &ParameterNumbers) -> Value {
     })
 }
 
-/// Changes the description of the paths to the interface of release 2.
+/// Changes the paths to describe the interface of release 2.
 fn describe_release_2(paths: &mut Value) {
     let require_id = |schema: &mut Value| match &mut schema["required"] {
         Value::Array(fields) => fields.push(schema::REQUEST_ID.into()),

@@ -12,7 +12,7 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::{Session, request_id};
 use novamind_tools::{ToolId, find};
 
-/// Maximum length of a line, in bytes. Requests of the released simulator are shorter.
+/// Maximum length of a line, in bytes. Requests to the released simulator are shorter.
 const MAX_LINE_BYTES: usize = 4 << 20;
 const WEEK_OPERATION: &str = "next-week";
 const CALL_PREFIX: &str = "call:";
@@ -67,7 +67,7 @@ pub struct PlayedHistory {
     pub rejected_here: Vec<LineRemark>,
     /// Entries that were rejected in the released simulator and successful here.
     pub accepted_here: Vec<LineRemark>,
-    /// Entries after which the day differs.
+    /// Entries after which the day of this run differs from the day in the history.
     pub different_days: Vec<LineRemark>,
 }
 
@@ -179,7 +179,8 @@ impl ReleaseHistory {
     }
 }
 
-/// Checks the fields of an entry that begins on `day`. Returns `None` for a request without a known outcome.
+/// Checks the fields of an entry that begins on `day`. Returns `None` if the outcome of the request is
+/// unknown.
 fn check_entry(entry: &Map<String, Value>, day: u32) -> Result<Option<Checked>, String> {
     let Some(operation) = entry.get("operation").and_then(Value::as_str) else {
         return Err("the entry has no operation. Logs of older clients do not contain the input of requests, so they \

@@ -1,4 +1,4 @@
-//! A client for a run that a server on this machine plays.
+//! A client for a run that is played by a server on this machine.
 
 use std::net::Ipv4Addr;
 use std::path::Path;
@@ -46,7 +46,8 @@ pub struct ServerResponse {
 }
 
 impl RemoteServer {
-    /// Finds the server that plays the run of a folder. Returns `None` if no server responds for this run over HTTP.
+    /// Finds the server that plays the run in a folder. Returns `None` if no server responds for this run
+    /// over HTTP.
     ///
     /// The announcement of a killed server is detected without a request, because no process has locked the run.
     pub fn find(folder: &Path, run: &str) -> Option<RemoteServer> {
@@ -60,8 +61,8 @@ impl RemoteServer {
         };
         let mut remote = RemoteServer { port: announcement.port?, announcement, token, has_release_2: false };
         let health = remote.send(Method::GET, "/health", None, HEALTH_DEADLINE).ok()?;
-        // A server with too many connections rejects the health check and does not name its run. The server also
-        // rejects the actual request.
+        // A server that has too many connections rejects the health check, and its response does not name the
+        // run. The server will also reject the actual request.
         let is_full = health.status == 503 && health.body["code"] == "too_many_connections";
         remote.has_release_2 = health.body["interface"] == "release_2";
         (is_full || health.status == 200 && health.body["run"] == run).then_some(remote)
@@ -86,7 +87,7 @@ impl RemoteServer {
     /// Sends a POST request with an object.
     ///
     /// # Errors
-    /// As [`RemoteServer::get`]. The server may have executed the request despite the error.
+    /// Same as [`RemoteServer::get`]. The server may have executed the request despite the error.
     pub fn post(&self, path: &str, body: &Value) -> Result<ServerResponse, String> {
         self.send(Method::POST, path, Some(body), REQUEST_DEADLINE)
     }
@@ -94,7 +95,7 @@ impl RemoteServer {
     /// Asks the server to finish pending requests and close the run.
     ///
     /// # Errors
-    /// As [`RemoteServer::get`].
+    /// Same as [`RemoteServer::get`].
     pub fn shut_down(&self) -> Result<ServerResponse, String> {
         self.post("/shutdown", &json!({}))
     }
@@ -133,7 +134,8 @@ async fn exchange(port: u16, request: Request<Body>) -> Result<ServerResponse, S
         .await
         .map_err(|error| in_words(&error))?;
     tokio::spawn(async move {
-        // Ignore errors of the connection, because the request that waits for the response reports them.
+        // Errors of the connection are ignored here, because the request that waits for the response reports
+        // them.
         let _ = connection.await;
     });
     let response = sender.send_request(request).await.map_err(|error| in_words(&error))?;

@@ -18,7 +18,7 @@ pub enum ApiRequest {
         /// Id of the request, or null if the client sent no id.
         request_id: Value,
     },
-    /// Request to record a tool call that was rejected before it reached the tool.
+    /// Request to record a tool call that was rejected before the tool was executed.
     RejectedCall {
         /// Name of the called tool.
         tool: String,
@@ -114,7 +114,7 @@ impl ApiRequest {
         ApiRequest::Call { tool: name.to_owned(), args: fields.into(), request_id }
     }
 
-    /// Returns the id with which the session stores the response, or `None` if the response is not stored.
+    /// Returns the id under which the session stores the response, or `None` if the response is not stored.
     pub fn stored_id(&self) -> Option<&str> {
         match self {
             ApiRequest::NextWeek { request_id, .. } => request_id.as_str(),
@@ -171,7 +171,7 @@ pub enum ResponseStatus {
     Unauthorized,
     /// The request is not allowed.
     Forbidden,
-    /// The route, tool or script that the request names does not exist.
+    /// The route, tool or script named by the request does not exist.
     NotFound,
     /// Another week is being simulated.
     Busy,
@@ -212,7 +212,8 @@ impl ApiResponse {
         ApiResponse { status: ResponseStatus::Done, body }
     }
 
-    /// Returns the response for a rejection. Programs for the released simulator read the fields `error` and `data`.
+    /// Returns the response for a rejection. The fields `error` and `data` are read by programs for the
+    /// released simulator.
     pub fn rejected(status: ResponseStatus, rejection: impl Into<RejectionRecord>) -> ApiResponse {
         let rejection = rejection.into();
         let error = error_text(&rejection.message, &json!(rejection.results));
@@ -225,8 +226,8 @@ impl ApiResponse {
         ApiResponse { status, body }
     }
 
-    /// Converts the response to the response of a tool call, in which every rejection is a normal result. Rejected
-    /// statements and weeks are included.
+    /// Converts the response to the response of a tool call, in which every rejection is a normal result,
+    /// including rejections of statements and weeks.
     pub fn into_tool_response(mut self) -> ApiResponse {
         let is_of_tool = match self.status {
             ResponseStatus::BadRequest | ResponseStatus::Forbidden | ResponseStatus::TimedOut => true,

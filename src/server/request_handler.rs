@@ -1,4 +1,4 @@
-//! Executes requests of all interfaces on the session.
+//! Executes requests from all interfaces on the session.
 
 use serde_json::{Map, Value, json};
 
@@ -11,7 +11,7 @@ use novamind_tools::{NotebookSection, Rejection, ToolId};
 /// Tools that ignore null arguments, because older programs send null for omitted arguments.
 const TOOLS_IGNORING_NULLS: [ToolId; 3] = [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetDailySpend];
 
-/// Executes a request. `via` is the interface that the record names.
+/// Executes a request. `via` is the interface that is named in the record.
 pub fn handle_request(session: &mut Session, request: ApiRequest, via: Via) -> ApiResponse {
     match request {
         ApiRequest::Call { tool, args, request_id } => handle_call(session, &tool, args, &request_id, via),

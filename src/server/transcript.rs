@@ -50,7 +50,8 @@ pub struct ForeignCall {
 pub struct PlayedTranscript {
     /// Number of executed calls, including weeks and statements.
     pub call_count: usize,
-    /// Position, tool and result of each call whose result differs from the transcript or that follows the end of the run.
+    /// Position, tool and result of each call that has a different result in the transcript or that follows
+    /// the end of the run.
     pub mismatches: Vec<(usize, String, String)>,
     /// Number of accepted Python programs, which are not executed.
     pub not_run: usize,

@@ -1,4 +1,4 @@
-//! The thread that owns the session, and the handle with which interfaces send requests to it.
+//! The thread that owns the session, and the handle through which interfaces send requests to the thread.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -142,13 +142,13 @@ fn worker_gone_response() -> ApiResponse {
     )
 }
 
-/// Number and request id of the pending requests for a week. All pending requests are retries of the first request.
+/// Number of pending requests for a week, and their request id. All of them are retries of the first request.
 #[derive(Clone, Default)]
 struct PendingWeeks(Arc<Mutex<(usize, Value)>>);
 
 impl PendingWeeks {
-    /// Adds a request for a week. Returns false if another week is being simulated and the request is not a retry with
-    /// the same id. A retry waits and receives the first response.
+    /// Adds a request for a week. Returns `false` if another week is being simulated and the request is not a
+    /// retry with the same id. A retry waits and receives the first response.
     fn try_begin(&self, request_id: &Value) -> bool {
         let mut weeks = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (open, id) = &mut *weeks;
@@ -222,7 +222,8 @@ impl WorkerState {
         self.session.as_ref().is_some_and(kept)
     }
 
-    /// Executes a request. During a request that can change the run, the committed state names the request.
+    /// Executes a request. While a request that can change the run is executed, the committed state contains
+    /// its id.
     fn respond_and_commit(&mut self, request: ApiRequest) -> ApiResponse {
         let committed = self.committed.clone().filter(|state| {
             let id = request.stored_id();
@@ -261,7 +262,7 @@ impl WorkerState {
     }
 }
 
-/// Reports an internal error to `on_defect`, and returns a response with the number of the report.
+/// Reports an internal error to `on_defect`, and returns a response that contains the ID of the report.
 fn internal_error(on_defect: OnDefect) -> ApiResponse {
     static DEFECTS: AtomicU64 = AtomicU64::new(1);
     let id =

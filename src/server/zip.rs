@@ -1,4 +1,4 @@
-//! Reads stored, deflated and Zstandard-compressed files of a zip archive, such as Inspect's `.eval` logs.
+//! Reads stored, deflated and Zstandard-compressed files from a zip archive, such as Inspect's `.eval` logs.
 
 use std::io::Read;
 

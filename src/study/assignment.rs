@@ -1,4 +1,4 @@
-//! `assignment.csv`: the assignment of a condition, a seed and a position to each participant.
+//! `assignment.csv`: assigns a condition, a seed and a position to each participant.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -22,7 +22,7 @@ pub struct Assignment {
 pub struct AssignmentRow {
     /// Label of the participant.
     pub label: String,
-    /// Condition of the participant; `None` in a study without conditions.
+    /// Condition of the participant; `None` if the study has no conditions.
     pub condition: Option<String>,
     /// Seed of the session; `None` if all participants play the same seed.
     pub seed: Option<u64>,
@@ -109,8 +109,8 @@ impl Assignment {
         format!("{}\n{lines}", COLUMNS.join(","))
     }
 
-    /// Assigns the cells of a design to labels. Each block of participants contains every cell once, in a random order
-    /// with `draw` as the seed.
+    /// Assigns the cells of a design to labels. Each block of participants contains every cell once, in a
+    /// random order that depends on the seed `draw`.
     pub fn randomize_in_blocks(
         labels: &[String],
         seeds: &[u64],
@@ -143,8 +143,8 @@ impl Assignment {
     }
 }
 
-/// Returns the numbers below `count` in a random order for a block. The order follows from a keyed hash, so the order
-/// is the same on every machine.
+/// Returns the numbers below `count` in a random order for a block. The order is derived from a keyed hash,
+/// so it is the same on every machine.
 fn shuffled_indexes(count: usize, draw: u64, block: u64) -> Vec<usize> {
     let key = |at: usize| {
         let drawn = [draw.to_le_bytes(), block.to_le_bytes(), (at as u64).to_le_bytes()].concat();

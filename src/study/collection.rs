@@ -48,14 +48,15 @@ pub enum CollectNote {
         /// Number of the first line in which the records differ, from 1.
         line: usize,
     },
-    /// Several sessions of one study with the same label: two participants, or one participant who played twice.
+    /// Several sessions of one study that have the same label: two participants used the label, or one
+    /// participant played twice.
     SharedLabel {
         /// Label of the sessions.
         label: String,
         /// IDs of the runs.
         runs: Vec<String>,
     },
-    /// A label of the assignment without a session.
+    /// A label of the assignment that has no session.
     Missing {
         /// Label of the participant.
         label: String,
@@ -198,7 +199,7 @@ pub struct CollectedRuns {
     pub visits: Vec<FoundVisit>,
 }
 
-/// A line of a list of visits, and the folder of runs that contains the list.
+/// A line of a list of visits, with the folder of runs that contains the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FoundVisit {
     /// The line of the list of visits.
@@ -207,8 +208,9 @@ pub struct FoundVisit {
     pub folder: PathBuf,
 }
 
-/// Finds all runs and archives below the given paths. Archives are unpacked into `workshop`. The folder `without` is
-/// not searched. If `lab` is given, a note is added for each archive that the lab has not signed.
+/// Finds all runs and archives below the given paths. Archives are unpacked into `workshop`. The folder
+/// `without` is not searched. If `lab` is given, the result has a note for each archive that the lab has not
+/// signed.
 pub fn collect_runs(
     sources: &[PathBuf],
     workshop: &Path,
@@ -261,8 +263,8 @@ pub fn collect_runs(
     gathered
 }
 
-/// Returns a note for each label of an assignment without a session. `labels` contains the labels with a session.
-/// `others` maps a label to its run with a different protocol and the digest of this protocol.
+/// Returns a note for each label of an assignment that has no session. `labels` contains the labels that have
+/// a session. `others` maps a label to its run with a different protocol and to the digest of that protocol.
 pub fn missing_participants(
     assignment: &Assignment,
     labels: &BTreeSet<String>,
@@ -329,7 +331,8 @@ fn scan_folder(path: &Path, without: &Path, depth: usize, found: &mut FoundPaths
     Ok(())
 }
 
-/// Keeps the latest record of a run if it continues all other records of the run. Otherwise adds the records as a conflict.
+/// Keeps the latest record of a run if it continues all other records of the run. Otherwise adds all records
+/// as a conflict.
 fn merge_records(run: String, mut records: Vec<FoundRun>, gathered: &mut CollectedRuns) {
     records.sort_by(|one, other| (other.hashes.len(), &one.source).cmp(&(one.hashes.len(), &other.source)));
     let mut apart: Vec<FoundRun> = Vec::new();
@@ -353,7 +356,7 @@ fn merge_records(run: String, mut records: Vec<FoundRun>, gathered: &mut Collect
     gathered.conflicts.insert(run, apart);
 }
 
-/// Returns a note for each label with several sessions of one study. Practice runs do not count.
+/// Returns a note for each label that has several sessions of one study. Practice runs do not count.
 fn shared_labels(runs: &[FoundRun]) -> Vec<CollectNote> {
     let mut by_label: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
     for run in runs {

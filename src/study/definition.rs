@@ -69,13 +69,13 @@ pub struct Protocol {
     /// Time limits of weeks, sessions and runs.
     #[serde(default)]
     pub limits: TimeLimits,
-    /// Settings for the record of the sessions.
+    /// What is recorded of the sessions, and in which form.
     #[serde(default)]
     pub record: RecordOptions,
     /// Language model that words the messages of the runs; `None` for the built-in voice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelSettings>,
-    /// Settings of earlier versions that have no effect, which are accepted so that old studies can be read.
+    /// Settings of earlier versions. They have no effect, and are accepted so that old studies can be read.
     #[serde(default, skip_serializing)]
     integrity: RemovedSettings,
     /// Access of the experimenter to additional functions.
@@ -109,17 +109,18 @@ impl Default for StudyWorld {
 pub struct Seeds {
     /// Method of assigning seeds.
     pub plan: SeedPlan,
-    /// Seed of all participants, with plan `one`.
+    /// Seed of all participants if the plan is `one`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Seeds of a block, with plan `blocks`. Each block of participants plays all these seeds in random order.
+    /// Seeds of a block if the plan is `blocks`. Each block of participants plays all these seeds in random
+    /// order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub block: Vec<u64>,
     /// Conditions, which are crossed with the seeds of a block. Conditions label and balance participants and do not
     /// change the program.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub conditions: Vec<String>,
-    /// Seed of the randomization, with plan `blocks`; `None` for seed 1.
+    /// Seed of the randomization if the plan is `blocks`; `None` for seed 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub draw: Option<u64>,
 }
@@ -211,13 +212,13 @@ impl Default for SessionOptions {
     }
 }
 
-/// Settings for the record of the sessions.
+/// Settings that determine what is recorded of the sessions, and in which form.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RecordOptions {
     /// Kinds of activity that are not recorded.
     pub leave_out: Vec<String>,
-    /// Form in which notes and text answers are recorded.
+    /// Form in which notes and free-text answers are recorded.
     pub free_text: FreeTextRecording,
     /// Form in which edits of texts are recorded.
     pub drafts: DraftRecording,
@@ -365,7 +366,7 @@ impl Protocol {
         .collect()
     }
 
-    /// Returns whether a code gives the experimenter's access. Returns `false` if the protocol has no code.
+    /// Returns whether a code grants the experimenter's access. Returns `false` if the protocol has no code.
     pub fn accepts_code(&self, code: Option<&str>) -> bool {
         matches!((&self.access.code, code), (Some(digest), Some(code)) if digest.matches(code))
     }

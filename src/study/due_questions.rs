@@ -1,4 +1,4 @@
-//! The questions of a study that are due in a run, and the record of their answers.
+//! Returns the questions of a study that are due in a run, and records their answers.
 
 use serde_json::{Value, json};
 
@@ -15,7 +15,7 @@ pub struct DueQuestion {
     pub questionnaire: String,
     /// Heading of the questionnaire.
     pub title: String,
-    /// Text before the first question of the questionnaire.
+    /// Text that is shown before the first question of the questionnaire.
     pub introduction: String,
     /// Occasion of the question: `before`, `week N`, `break N` or `end`.
     pub occasion: String,
@@ -86,9 +86,9 @@ impl DueQuestion {
         }));
     }
 
-    /// Records the answer to the question. `value` is null if the question was skipped. Free text is masked if the
-    /// rules of the session require it. `shown_ms` is the time
-    /// for which the question was shown.
+    /// Records the answer to the question. `value` is null if the question was skipped. Free text is masked
+    /// if the rules of the session require it. `shown_ms` is the time for which the question was shown, in
+    /// milliseconds.
     pub fn record_answer(&self, session: &mut Session, value: &Value, for_ms: u64, changes: u32) {
         let masked =
             session.rules().free_text == FreeTextRecording::Masked && self.question.form.is_free_text();

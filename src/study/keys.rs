@@ -15,13 +15,12 @@ pub const LAB_PUBLIC_KEY_FILE: &str = "lab.pub";
 /// Name of the file that contains the key for sealing snapshots.
 pub const SEAL_KEY_FILE: &str = "seal.key";
 
-/// Creates the missing keys of a study. An existing `lab.key` is kept, and the other keys are derived from it. Returns
-/// the public
-/// key and the files that were written.
+/// Creates the missing keys of a study. An existing `lab.key` is kept, and the other keys are derived from
+/// it. Returns the public key and the paths of the written files.
 ///
 /// # Errors
-/// Returns an error if the system provides no random numbers, if a file cannot be read or written, or if `lab.pub` or
-/// `seal.key` exists without `lab.key`.
+/// Returns an error if the system provides no random numbers, if a file cannot be read or written, or if
+/// `lab.pub` or `seal.key` exists although `lab.key` is missing.
 pub fn create_missing_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError> {
     let [lab_key, public, seal] =
         [LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE].map(|name| folder.join(name));

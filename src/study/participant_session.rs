@@ -1,4 +1,4 @@
-//! The steps of a participant at a machine, from the label to the final page.
+//! The steps of a participant at a machine, from entering the label to the final page.
 //!
 //! The next step is derived from the participant's runs and the list of visits. A participant can therefore leave
 //! after any step and resume there.
@@ -61,12 +61,12 @@ pub enum NextStep {
 }
 
 impl ParticipantSession {
-    /// Starts the visit of a participant. `runs` is the machine's folder of runs. `refused` is the number of labels
-    /// that were rejected before.
+    /// Starts the visit of a participant. `runs` is the machine's folder of runs. `refused` is the number of
+    /// labels that were rejected before this label.
     ///
     /// # Errors
-    /// Returns an error if the label is not in the assignment or cannot be the name of a folder. The list of visits
-    /// records the rejection.
+    /// Returns an error if the label is not in the assignment or cannot be the name of a folder. The
+    /// rejection is recorded in the list of visits.
     pub fn start(
         study: Study,
         runs: &Path,

@@ -16,12 +16,12 @@ pub struct Questionnaire {
     pub name: String,
     /// Heading of the questionnaire.
     pub title: String,
-    /// Text before the first question.
+    /// Text that is shown before the first question.
     #[serde(default)]
     pub introduction: String,
     /// Occasion on which the questionnaire is asked.
     pub when: Occasion,
-    /// Weeks after which the questionnaire is asked, with `when = "weeks"`.
+    /// Weeks after which the questionnaire is asked, if `when = "weeks"`.
     #[serde(default)]
     pub weeks: Vec<u32>,
     /// Questions of the questionnaire in order.

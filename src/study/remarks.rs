@@ -9,7 +9,7 @@ use novamind_record::error::RunError;
 use novamind_record::files::append_synced;
 use novamind_record::files::read_regular_text_or_empty;
 
-/// Name of the file with the experimenter's remarks.
+/// Name of the file that contains the experimenter's remarks.
 pub const REMARKS_FILE: &str = "remarks.jsonl";
 
 /// A remark of the experimenter on a participant.

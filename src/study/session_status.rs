@@ -1,4 +1,4 @@
-//! Current states of a study's sessions on a machine, for `study watch`.
+//! Current states of a study's runs on a machine, for `study watch`.
 
 use std::path::Path;
 
@@ -52,7 +52,7 @@ pub enum SessionState {
     Over,
 }
 
-/// Returns the runs of a study in a machine's folder of runs, sorted by label and run.
+/// Returns the states of a study's runs in a machine's folder of runs, sorted by label and run.
 pub fn session_statuses(study: &Study, runs: &Path) -> Vec<SessionStatus> {
     let folders = all_run_folders(runs);
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());

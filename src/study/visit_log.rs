@@ -1,4 +1,5 @@
-//! `visits.jsonl` in the folder of runs: the visits of participants with their outcomes, including visits without a run.
+//! `visits.jsonl` in the folder of runs: the visits of participants with their outcomes, including visits in
+//! which no run was played.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -12,7 +13,7 @@ use novamind_record::files::read_regular_text_or_empty;
 use novamind_record::files::{append_synced, create_folder};
 use novamind_session::Machine;
 
-/// Name of the file with the list of visits.
+/// Name of the file that contains the list of visits.
 pub const VISITS_FILE: &str = "visits.jsonl";
 
 /// A line of the list of visits.
@@ -97,13 +98,13 @@ pub fn record_rejected_code(study: &Study, runs: &Path) {
 /// Number of participants who visited a study, by outcome.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct VisitSummary {
-    /// Number of labels with a visit.
+    /// Number of labels that have at least one visit.
     pub came: usize,
     /// Number of labels that declined consent and have no run.
     pub declined: usize,
     /// Number of labels that withdrew.
     pub withdrew: usize,
-    /// Number of labels that finished and did not withdraw.
+    /// Number of labels that completed the study and did not withdraw.
     pub finished: usize,
     /// Number of rejected label entries, including repetitions.
     pub refused_labels: usize,
@@ -153,7 +154,8 @@ impl fmt::Display for VisitSummary {
     }
 }
 
-/// Returns the visits in which a participant finished the study, for labels that have no run and did not withdraw.
+/// Returns the visits in which a participant completed the study, for labels that have no run and did not
+/// withdraw.
 pub fn finished_visits_without_run<'a>(
     lines: &'a BTreeSet<VisitLine>,
     with_runs: &BTreeSet<&str>,
@@ -165,7 +167,8 @@ pub fn finished_visits_without_run<'a>(
     lines.iter().filter(is_finished).filter(has_no_run).collect()
 }
 
-/// Returns the visits to a study on the given machines. Lines that occur in copies of a folder are returned once.
+/// Returns the visits to a study on the given machines. A line that occurs in several copies of a folder is
+/// returned once.
 pub fn read_study_visits(study: &Study, machines: &[PathBuf]) -> BTreeSet<VisitLine> {
     let lines = machines.iter().flat_map(|runs| read_visits(&runs.join(VISITS_FILE)));
     lines.filter(|line| line.study == study.digest).collect()

@@ -11,7 +11,7 @@ use novamind_record::files::{create_folder, write_atomically};
 /// Name of the file that records a withdrawal.
 const WITHDRAWAL_FILE: &str = "withdrawn.toml";
 
-/// The record of a withdrawal and the erased runs.
+/// The record of a withdrawal, which lists the erased runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(crate) struct WithdrawalRecord {
     /// IDs of the erased runs, separated by spaces.
@@ -23,7 +23,7 @@ pub(crate) struct WithdrawalRecord {
 }
 
 impl WithdrawalRecord {
-    /// Creates the record of a withdrawal at the current time that erases these runs of a study.
+    /// Creates the record of a withdrawal from a study, with the erased runs and the current time.
     pub(crate) fn new(runs: &[String], study: &str) -> WithdrawalRecord {
         WithdrawalRecord { run: runs.join(" "), study: study.to_owned(), at: now() }
     }

@@ -8,8 +8,8 @@ use crate::server::{PageContext, agent_page, write_documents};
 use crate::session::{Access, Session};
 use crate::tools::ParameterNumbers;
 
-/// Prints the agent's instructions, or writes them to a folder together with the reference documents. Without a named
-/// run, the instructions describe a run with the bundled parameters of a scenario.
+/// Prints the agent's instructions, or writes them to a folder together with the reference documents. If no
+/// run is named, the instructions describe a run with the bundled parameters of a scenario.
 pub fn print_or_write(
     named: Option<&str>,
     scenario: &str,

@@ -28,7 +28,7 @@ pub fn unreachable_failure(error: &str) -> Failure {
 /// Returns an error if the response is a rejection.
 ///
 /// # Errors
-/// The response is a rejection. The message names the error code, the argument and the reason.
+/// The response is a rejection. The message contains the error code, the argument and the reason.
 pub fn check_response(reply: &ServerResponse) -> Result<(), Failure> {
     if reply.status == 200 && reply.body["success"] != Value::Bool(false) {
         return Ok(());

@@ -85,15 +85,17 @@ enum AgentCommand {
 }
 
 impl Options {
-    /// Adds `--code` to the arguments of the called tool. Without a study, `--code` cannot be an experimenter's code.
+    /// Adds `--code` to the arguments of the called tool, because `--code` cannot be an experimenter's code
+    /// if there is no study.
     pub fn restore_code_argument(&mut self, code: String) {
         if let AgentCommand::Call { arguments, .. } = &mut self.command {
             arguments.splice(0..0, ["--code".to_owned(), code]);
         }
     }
 
-    /// Sends a call of a tool with its request id, and prints the response. If the call needs an id and the command
-    /// names none, generates an id and prints it to standard error, so that the user can retry.
+    /// Sends a call of a tool with its request id, and prints the response. If the call needs an id and the
+    /// command contains none, generates an id and prints it to standard error, so that the user can retry the
+    /// call.
     fn print_call(
         &self,
         remote: &RemoteServer,

@@ -44,7 +44,7 @@ impl AgentRun {
     /// Creates a run for an agent.
     ///
     /// # Errors
-    /// As `serve --new`.
+    /// Same as `serve --new`.
     pub fn create(new: &NewRunOptions, context: &Context) -> Result<AgentRun, Failure> {
         let mut session = create_run(new, context)?;
         session.save()?;
@@ -63,7 +63,7 @@ impl AgentRun {
         let id = named.map(str::to_owned).or_else(last_created).ok_or_else(|| {
             Failure::usage("there is no agent run here: create a run with `novamind agent new`, or name a run with --run or NOVAMIND_RUN")
         })?;
-        // If a folder is named after the run id, the other runs need not be read.
+        // If a folder has the run id as its name, the other runs need not be read.
         let path = run_folder(&runs, &id);
         let is_name = !id.is_empty() && id.chars().all(|letter| letter.is_ascii_alphanumeric());
         let folder = match is_name && path.join("run.toml").is_file() {
@@ -137,7 +137,7 @@ impl AgentRun {
         Ok(client)
     }
 
-    /// Locks `server.lock` before a server is found, started or stopped.
+    /// Locks `server.lock`. The lock is required for finding, starting or stopping a server.
     fn lock(&self) -> Result<File, Failure> {
         let path = self.folder.join("server.lock");
         let open = File::options().create(true).truncate(false).write(true).open(&path);
@@ -151,7 +151,7 @@ impl AgentRun {
         let runs = self.folder.parent().unwrap_or(&self.folder);
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
         command.arg("--runs-dir").arg(runs).args(["serve", "--run", &self.id]);
-        // `--runs-dir` already names the participant's folder.
+        // `--runs-dir` is already the participant's folder.
         command.env_remove("NOVAMIND_PARTICIPANT").env_remove("NOVAMIND_RUNS");
         if secrecy == Authentication::Token {
             let token = self.folder.join("server.token");

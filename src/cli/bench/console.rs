@@ -30,7 +30,7 @@ pub const CASES: &[BenchCase] = &[
         name: "keys",
         figures: &[
             BenchFigure::with_target(
-                "key press to frame during a week, 200×60: 99 of 100",
+                "key press to frame during a week, 200×60: 99th percentile",
                 BenchUnit::Milliseconds,
                 16.0,
                 None,

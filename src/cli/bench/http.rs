@@ -20,7 +20,7 @@ pub const CASES: &[BenchCase] = &[BenchCase {
     figures: &[
         BenchFigure::without_target("HTTP with 165,000 subscribers: tool call", BenchUnit::Milliseconds),
         BenchFigure::with_target(
-            "HTTP with 165,000 subscribers: small query, 99 of 100",
+            "HTTP with 165,000 subscribers: small query, 99th percentile",
             BenchUnit::Milliseconds,
             50.0,
             None,

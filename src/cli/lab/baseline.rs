@@ -43,8 +43,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     options.output.show(&baseline_report(&grid, is_of_the_paper, &results))
 }
 
-/// Plays the representatives first, because the runs of most other configurations turn out to equal the run of their representative. A
-/// representative has the lowest cash floor among configurations that are otherwise equal.
+/// Plays the representatives first, because the runs of most other configurations equal the run of their
+/// representative. A representative has the lowest cash floor among configurations that are otherwise equal.
 fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<ExperimentResults, Failure> {
     let points = &grid.configurations;
     let seeds = options.seeds.first..=options.seeds.last;
@@ -62,7 +62,7 @@ fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<
     for point in points {
         starts.push(start_cash(point, options, context)?);
     }
-    // Results that were just computed are used even with --fresh.
+    // The results of the representatives were just computed, so they are used even with `--fresh`.
     let play = PlayOptions { fresh: false, ..options.play.clone() };
     run_experiment_with_known_results(
         "baseline",

@@ -24,7 +24,8 @@ pub struct PlayOptions {
     pub fresh: bool,
 }
 
-/// Conducts the experiment of a command. Results are cached under the name of the command, so that each run is played once.
+/// Conducts the experiment of a command. Results are cached under the name of the command, so that each run
+/// is played only once.
 ///
 /// # Errors
 /// An arm cannot start, a run cannot be played, or the results cannot be written. Stopping the experiment is also an error.
@@ -99,7 +100,7 @@ fn run_with_result_file<R>(
     Ok(results?)
 }
 
-/// Returns a flag that ctrl-c sets. A second ctrl-c ends the program at once.
+/// Returns a flag that is set by ctrl-c. A second ctrl-c ends the program immediately.
 pub fn stop_flag_on_signals() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     #[cfg(unix)]

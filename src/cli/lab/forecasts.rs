@@ -64,7 +64,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     print(&format!("{} companies\n{}", companies.len(), coverage_table(&results)))
 }
 
-/// Plays all policies and random settings on all seeds and scenarios. Returns the companies in this order.
+/// Plays all policies and random settings on all seeds and scenarios. Returns the companies in the order in
+/// which they are listed.
 fn play_companies(options: &Options, context: &Context) -> Result<Vec<CompanyForecasts>, Failure> {
     let scenarios: Vec<&str> = match options.scenario.is_empty() {
         true => SCENARIOS.to_vec(),
@@ -117,7 +118,8 @@ fn replay_recorded_runs(folder: &Path) -> Result<Vec<CompanyForecasts>, Failure>
     Ok(replayed?)
 }
 
-/// Replaces the coverage by the coverage of newly measured intervals on companies that did not contribute to them.
+/// Replaces the coverage in the results with the coverage of newly measured intervals, which was measured on
+/// companies that did not contribute to the intervals.
 fn set_measured_coverage(
     results: &mut BTreeMap<(GrowthStage, u32), StageResult>,
     intervals: &ErrorIntervals,

@@ -24,7 +24,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let replayed = session.inspect().replay_days(&mut |day| collector.add_day(day));
     replayed.map_err(|rejection| Failure::failed(rejection.message))?;
     let manifest = session.manifest();
-    // A participant of a study must not learn the seed.
+    // Participants of a study must not learn the seed.
     let seed = match manifest.study.is_none() || context.is_experimenter {
         true => manifest.seed.to_string(),
         false => String::new(),

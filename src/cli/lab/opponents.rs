@@ -22,7 +22,7 @@ pub struct Options {
     json: bool,
 }
 
-/// Prints the scores of the policies next to the run. Does not modify the run.
+/// Prints the scores of the policies, compared with the score of the run. Does not modify the run.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs_folder()?, &options.run)?;
     context.check_view_allowed(&folder)?;
@@ -49,7 +49,7 @@ fn to_text(opponents: &OpponentResults, run: &Session) -> String {
     };
     let mut places: Vec<(f64, String, String)> = opponents.policies.iter().map(policy).collect();
     let (name, day) = (format!("this run, {}", run.manifest().id), run.day());
-    // Only the cash after the last day is a score.
+    // Cash is a score only after the last day.
     let not_over = match run.score() {
         Some(score) => {
             places.push((score, name, describe_end(run.ended() == Some(RunEndReason::Bankruptcy), day)));

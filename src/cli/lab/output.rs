@@ -31,7 +31,8 @@ pub struct OutputOptions {
 }
 
 impl OutputOptions {
-    /// Returns whether to print rows, for commands that print rows unless JSON or a graph is requested.
+    /// Returns whether to print rows, for commands that print rows unless JSON output or a graph is
+    /// requested.
     pub fn prints_rows(&self) -> bool {
         !self.json && self.svg.is_none()
     }

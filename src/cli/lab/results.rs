@@ -59,7 +59,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             Ok(()) => match read_result(folder) {
                 Ok(None) => {}
                 Ok(Some(result)) => {
-                    // The summary covers only the last weeks. A person may have played the weeks before the policy.
+                    // The summary names the policy of the last weeks only. A person may have played the weeks
+                    // before them.
                     let run_summary = RunSummary { policy: result.policy.clone(), ..summary.clone() };
                     let obstacles = RankingCriteria::from_summary(&run_summary).obstacles();
                     if is_listed(&obstacles) { results.push(result) } else { left_out.push(obstacles) }
@@ -91,7 +92,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     options.output.show(&exhibit)
 }
 
-/// Returns whether a run is listed: it is comparable, at least with runs of its generation.
+/// Returns whether a run is listed. A listed run is comparable at least with the runs of its generation.
 fn is_listed(obstacles: &[RankingObstacle]) -> bool {
     obstacles.iter().all(|obstacle| matches!(obstacle, RankingObstacle::Generation(_)))
 }

@@ -1,4 +1,4 @@
-//! Reads the runs that a command names.
+//! Reads the runs that are named on the command line.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::record::folder::runs::find_run_to_read;
 use crate::record::trajectory::Trajectory;
 use crate::session::Session;
 
-/// Reads each named run with `read`. Each run records that it was read.
+/// Applies `of` to each named run, and returns the results. Each run records that it was read.
 ///
 /// # Errors
 /// A run is missing, damaged, not accessible, or named twice.

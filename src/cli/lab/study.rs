@@ -124,8 +124,8 @@ fn check_output_paths(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// Returns the path of the file that caches the results of a study or shard. Concurrent programs for different shards
-/// use different files.
+/// Returns the path of the file that caches the results of a study or shard. Programs that play different
+/// shards at the same time use different files.
 fn results_file(
     context: &Context,
     plan: &StudyPlan,

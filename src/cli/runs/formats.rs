@@ -160,7 +160,8 @@ fn export_context(run: &Transcript) -> AgentContext {
     }
 }
 
-/// Returns only the list of tools, because only builds with the server contain the instructions.
+/// Returns a context that contains only a list of the tools, because only builds with the server contain the
+/// instructions.
 #[cfg(not(feature = "server"))]
 fn export_context(_: &Transcript) -> AgentContext {
     AgentContext { instructions: crate::tools::catalogue::list_by_module(), tools: Vec::new() }

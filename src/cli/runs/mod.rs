@@ -32,8 +32,8 @@ pub struct Options {
     #[arg(long, value_name = "LABEL")]
     participant: Option<String>,
     /// Print as JSON
-    // The argument needs a separate name, because options of `play` may precede a command, and `play` also has an
-    // option `json`.
+    // The argument needs a different name, because options of `play` may precede a command, and `play` also
+    // has an option `json`.
     #[arg(id = "runs_json", long = "json", global = true)]
     json: bool,
 }

@@ -17,7 +17,7 @@ use crate::session::{NewRun, Session};
 
 /// Maximum size of a transcript in bytes; a transcript of 500 days has a few megabytes.
 const MAX_TRANSCRIPT_BYTES: u64 = 512 << 20;
-/// Maximum number of listed tool results that differ from the transcript.
+/// Maximum number of listed results that differ from the file.
 const MAX_LISTED_MISMATCHES: usize = 10;
 const HISTORY_SCENARIO: &str = "release-2";
 const HISTORY_PLAYER: &str = "imported history";
@@ -49,7 +49,7 @@ pub fn import_transcript(
     let new_run = run_options.new_run(Mode::Sandbox, context)?;
     if new_run.mode == Mode::Baseline {
         return Err(Failure::usage(
-            "an imported transcript is not a baseline run, because nobody played it here; leave out --mode. Nothing \
+            "an imported transcript is not a baseline run, because it was not played here; leave out --mode. Nothing \
              was imported",
         ));
     }

@@ -177,7 +177,8 @@ impl Export {
         }
     }
 
-    /// Exports one run of many. Replaces an older archive of the run, because trajectories only grow.
+    /// Exports one of several runs. Replaces an older archive of the run, which contains nothing else because
+    /// trajectories only grow.
     fn export_into(
         &self,
         folder: &Path,
@@ -211,7 +212,8 @@ pub fn write_tables(tables: StudyTables, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Removes incomplete archives when a signal ends the program, because incomplete archives may contain hidden data.
+/// Removes incomplete archives if a signal ends the program, because incomplete archives may contain hidden
+/// data.
 pub fn remove_partial_files_on_signals() {
     #[cfg(unix)]
     {

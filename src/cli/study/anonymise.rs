@@ -75,7 +75,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         cells.map(Clone::clone).to_vec()
     }));
     let text = to_csv(&rows)?;
-    // The table of old and new names identifies participants, as the secret does.
+    // The table of old and new names, like the secret, can identify participants.
     let _ = std::fs::remove_file(&links_path);
     create_private_file(&links_path)
         .and_then(|mut file| file.write_all(text.as_bytes()))

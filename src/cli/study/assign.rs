@@ -61,7 +61,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     let csv = made.to_csv();
     Assignment::parse(&target.display().to_string(), csv.as_bytes()).map_err(RunError::from)?;
-    // The file is replaced atomically, because participants may start a session at the same time.
+    // The file is replaced atomically, because a participant may start a session at the same time.
     write_atomically(&target, csv.as_bytes())?;
     print(&format!(
         "{}: {} participants in blocks of {cells}, drawn with seed {draw}\n{}{}",
@@ -78,7 +78,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     ))
 }
 
-/// Returns the seed of the randomization. The option cannot override the protocol.
+/// Returns the seed of the randomization. Returns an error if the option contradicts the protocol.
 fn randomization_seed(options: &Options, protocol: &Protocol) -> Result<u64, Failure> {
     match (options.draw, protocol.seeds.draw) {
         (Some(asked), Some(protocol_seed)) if asked != protocol_seed => Err(Failure::usage(format!(

@@ -59,7 +59,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         return print(&escape_control_characters(&status_text(&study, &look(), &machines)));
     }
     loop {
-        // The terminal stays in its normal mode, so that scrolling and ctrl-c work as usual.
+        // The terminal remains in its normal mode, so that scrolling and ctrl-c work as usual.
         print(&format!(
             "\x1b[H\x1b[2J{}\npress ctrl-c to stop watching\n",
             escape_control_characters(&status_text(&study, &look(), &machines))
@@ -152,7 +152,7 @@ fn describe_state(state: SessionState) -> &'static str {
     }
 }
 
-/// Formats the time since a session wrote its last record line.
+/// Formats the time since a session wrote the last line of its record.
 fn format_quiet_time(seconds: f64) -> String {
     match seconds as u64 {
         0..=59 => format!("{seconds:.0} s"),

@@ -59,7 +59,7 @@ pub struct ClassSourceRun {
     pub day: u32,
 }
 
-/// A student of a class, with the handout of that student.
+/// A student of a class, with the student's handout.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassStudent {

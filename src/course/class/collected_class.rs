@@ -1,4 +1,4 @@
-//! A class with its newest collection, read from its folder.
+//! A class and its newest collection, which are read from the folder of the class.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -29,9 +29,9 @@ pub struct ClassCollection {
     pub runs: Vec<ClassRun>,
     /// Results of the reference play on the seeds of the submitted runs.
     pub references: Vec<ClassReference>,
-    /// Problems that the collection reports to the instructor.
+    /// Problems to report to the instructor.
     pub findings: Vec<ClassFinding>,
-    /// Number of records that are duplicates or earlier states of a collected run. Only the latest record of a run counts.
+    /// Number of records that are duplicates or earlier states of a collected run and therefore do not count.
     pub superseded: u32,
     /// Number of runs in the searched folders that do not belong to the class.
     pub others: u32,
@@ -144,7 +144,7 @@ struct CollectionBuilder<'a> {
 }
 
 impl CollectionBuilder<'_> {
-    /// Returns the label that a path contains, as the name of a folder or as the beginning of the file name.
+    /// Returns the label that a path contains as the name of a folder or at the beginning of the file name.
     fn find_label_in_path(&self, path: &Path) -> Option<String> {
         let begins = |part: &str, label: &str| {
             part.strip_prefix(label)
@@ -159,7 +159,8 @@ impl CollectionBuilder<'_> {
         found.manifest.participant.clone().or_else(|| self.find_label_in_path(&found.source))
     }
 
-    /// Returns whether a record started from a handout of the class, or from its lesson without a handout.
+    /// Returns whether a run started from a handout of the class, or from the lesson of the class without a
+    /// handout.
     fn belongs_to_class(&self, manifest: &Manifest) -> bool {
         let class = self.sources.class;
         let has_class_handout = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
@@ -178,8 +179,8 @@ impl CollectionBuilder<'_> {
         self.runs.push(run);
     }
 
-    /// Adds records of one run that contradict each other. If several records are valid, none of these records counts,
-    /// and each record is reported.
+    /// Adds records of one run that contradict each other. If several records are valid, none of them counts,
+    /// and all of them are reported.
     fn add_conflicting_records(&mut self, records: &[FoundRun]) {
         let found_runs: Vec<&FoundRun> =
             records.iter().filter(|found| self.belongs_to_class(&found.manifest)).collect();
@@ -233,7 +234,8 @@ impl CollectionBuilder<'_> {
         }
     }
 
-    /// Returns the reason why a valid record does not count, if it does not match the handout of this student.
+    /// Returns the reason why a valid record does not count. Returns `None` if the record matches the
+    /// student's handout.
     fn find_mismatch(&self, found: &FoundRun, label: &str) -> Option<(RunVerdict, ClassFinding)> {
         let (class, manifest) = (self.sources.class, &found.manifest);
         let (label, run) = (label.to_owned(), manifest.id.clone());

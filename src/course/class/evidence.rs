@@ -34,7 +34,7 @@ pub struct Evidence {
     pub pitfalls: Vec<String>,
     /// Day and cash in dollars, on day 0 and after each week.
     pub cash: Vec<(u32, f64)>,
-    /// Mean of each setting over the weeks in which the student decided.
+    /// Mean value of each setting over the weeks in which the student decided.
     pub decisions: BTreeMap<String, f64>,
     /// Weekly figures of the last week.
     pub figures: BTreeMap<String, f64>,
@@ -63,7 +63,8 @@ pub struct GoalEvidence {
 /// Re-simulates a run, compares every recorded state, and measures the goals and outcomes of its lesson events.
 ///
 /// # Errors
-/// Returns an error that names the first event that does not match, or an error if the run is missing or has another version.
+/// Returns an error that names the first event that does not match. Also returns an error if the run is
+/// missing or has another version.
 pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evidence, RunError> {
     let (origin, trajectory) = read_origin(folder)?;
     let manifest = &origin.manifest;
@@ -89,7 +90,7 @@ pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Res
     Ok(Evidence { is_over: trajectory.end_line().is_some(), ..replay.into_evidence(&session, manifest.seed) })
 }
 
-/// Results that are gathered while a run is re-simulated.
+/// Results that are collected while a run is re-simulated.
 struct EvidenceCollector {
     lesson_progress: Option<LessonProgress>,
     decisions: BTreeMap<String, f64>,
@@ -218,7 +219,8 @@ fn last_week_figures(session: &Session) -> BTreeMap<String, f64> {
 /// A submitted run with its verdict.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassRun {
-    /// Label in the first event of the run, otherwise the label in its path, otherwise empty.
+    /// Label in the first event of the run. If there is none, the label in the run's path; empty if there is
+    /// none either.
     pub label: String,
     /// Name of the run.
     pub run: String,
@@ -232,7 +234,7 @@ pub struct ClassRun {
     pub evidence: Evidence,
 }
 
-/// Decision on whether a submitted run counts.
+/// Whether a submitted run counts, with the reason if it does not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunVerdict {

@@ -60,7 +60,7 @@ pub enum ClassFinding {
         /// Path of the run.
         path: PathBuf,
     },
-    /// A student without a submission.
+    /// A student who submitted no run.
     Missing {
         /// Label of the student.
         label: String,

@@ -176,7 +176,8 @@ impl Handout {
     /// continue: the newest unfinished run of the handout, otherwise its newest run.
     ///
     /// # Errors
-    /// Returns an error if a run of this name exists that did not start from this handout, or if the run cannot be created.
+    /// Returns an error if a run of this name exists but did not start from this handout, or if the run
+    /// cannot be created.
     pub fn ensure_run(&self, base: &Path) -> Result<String, RunError> {
         let runs = participant_folder(base, &self.label).map_err(RunError::InvalidRequest)?;
         if let Some(run) = self.latest_run(&runs)? {

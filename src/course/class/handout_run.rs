@@ -1,4 +1,5 @@
-//! A run that is handed out. Every student receives a branch from the end of its last week, with a separate label and name.
+//! A run that is handed out. Every student receives a branch from the end of the run's last week, with a
+//! separate label and name.
 
 use std::path::Path;
 

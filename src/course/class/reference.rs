@@ -51,15 +51,16 @@ fn play_reference(
     Ok(ClassReference { evidence: session_evidence(&session, session.lesson(), seed) })
 }
 
-/// Returns the step and the goal by which a part is ranked, counted from 0: the last goal of the last step with goals.
+/// Returns the step and the goal by which a part is ranked, both counted from 0: the last goal of the last
+/// step that has goals.
 pub fn ranked_goal(part: &LessonPart) -> Option<(usize, usize)> {
     let step = part.steps.iter().rposition(|step| !step.goals.is_empty())?;
     Some((step, part.steps[step].goals.len() - 1))
 }
 
-/// Returns the ratio of a student's value to the reference play's value; higher is better. The ratio is inverted if
-/// the bound of the goal is a maximum.
-/// Returns `None` if the denominator or the reference value is not positive.
+/// Returns the ratio of a student's value to the reference play's value; higher is better. The ratio is
+/// inverted if the bound of the goal is a maximum. Returns `None` if the denominator or the reference value
+/// is not positive.
 pub fn share_of_reference(bound: Option<GoalBound>, value: f64, good: f64) -> Option<f64> {
     let (of, all) = if matches!(bound, Some(GoalBound::AtMost(_))) { (good, value) } else { (value, good) };
     (all > 0.0 && good > 0.0).then(|| of / all)

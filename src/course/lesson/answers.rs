@@ -31,7 +31,7 @@ pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> 
     session.record_lesson_event(RecordedLessonEvent { value: Some(value), ..about })
 }
 
-/// Returns the next hint of the current step and records that the student used it.
+/// Returns the next hint of the current step and records that the student used the hint.
 ///
 /// # Errors
 /// `not_in_a_lesson`, `no_hint` if the step has no further hint, `not_saved`.

@@ -108,7 +108,7 @@ pub enum DecisionComparison {
     Different(FirstDifference),
     /// The decisions are the same in every week.
     Same,
-    /// The part requires no decision of the student.
+    /// The part requires no decisions from the student.
     NoDecisions,
     /// One of the plays cannot be re-simulated, or the re-simulation of the student's play has a different result.
     NotComparable,
@@ -123,7 +123,7 @@ pub struct FirstDifference {
     pub day: u32,
     /// The decisions of this week that differ.
     pub decisions: Vec<DifferentDecision>,
-    /// Effect of using these decisions of the reference play in the student's run.
+    /// Effect of using the reference play's decisions of this week in the student's run.
     pub effect: DecisionEffect,
 }
 
@@ -169,7 +169,7 @@ pub struct DebriefStep {
     pub title: String,
     /// Number of tries of the step.
     pub tries: u32,
-    /// Number of hints that were used, and number of all hints.
+    /// Number of hints that were used, and total number of hints.
     #[serde(serialize_with = "serialize_hint_usage")]
     pub hints: (usize, usize),
     /// The question with guess and outcome.
@@ -248,8 +248,8 @@ impl FinishedPart {
         })
     }
 
-    /// Computes the debrief of the part, which is simulated up to four times in memory. `answers` evaluates the rules
-    /// of plays that answer enterprises by rules.
+    /// Computes the debrief of the part. The part is simulated up to four times in memory. `answers`
+    /// evaluates the rules by which plays answer enterprises.
     pub fn debrief(&self, answers: RuleEvaluator) -> Debrief {
         let plan = &self.lesson_progress.lesson.plan;
         let [good, bad, play_result] = thread::scope(|scope| {
@@ -303,7 +303,8 @@ impl FinishedPart {
         }
     }
 
-    /// Returns the figure of the first goal in the last step with goals, if the goal is the last value of a weekly figure.
+    /// Returns the figure of the first goal in the last step that has goals. Returns `None` if this goal is
+    /// not about the last value of a weekly figure.
     fn judged_figure(&self) -> Option<WeekFigure> {
         let steps = &self.lesson_progress.current_part().steps;
         let goal = steps.iter().rev().find_map(|step| step.goals.first())?;

@@ -31,7 +31,7 @@ pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> 
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved_rejection)?;
     let started = lesson_progress.current_part().step_weeks(step).0 * session.params().run.days_per_week;
     let mut again = create_lesson_branch(folder, session.manifest(), &trajectory, started)?;
-    // The first guess counts: the student has seen the outcome.
+    // The first guess counts, because the student has seen the outcome.
     if let Some(value) = lesson_progress.guess(step) {
         let about = RecordedLessonEvent::new(LessonEvent::Guess, step as u32 + 1);
         again.record_lesson_event(RecordedLessonEvent { value: Some(value), ..about })?;

@@ -32,7 +32,7 @@ pub struct LessonStatus {
     pub question: Option<LessonQuestion>,
     /// The goals of the step, with their current values.
     pub goals: Vec<GoalStatus>,
-    /// Texts of the hints that the student used.
+    /// Texts of the hints that the student has used.
     pub hints: Vec<String>,
     /// Number of hints of the step.
     pub hint_count: usize,
@@ -51,7 +51,7 @@ pub struct LessonStatus {
     pub screens: Option<Vec<String>>,
     /// Tools that the student can use; `None` for all tools.
     pub tools: Option<Vec<ToolId>>,
-    /// Whether the lesson sets the capacity, so that the student cannot set the capacity.
+    /// Whether the lesson sets the capacity tier, so that the student cannot set it.
     pub has_automatic_capacity: bool,
     /// Whether the student can run a week without entering forecasts or a rationale.
     pub skips_forecasts: bool,
@@ -70,7 +70,7 @@ pub struct LessonQuestion {
     pub guess: Option<f64>,
     /// The actual value that the student had to guess; `None` before the value is known.
     pub outcome: Option<f64>,
-    /// Whether the outcome is shown at the end of the part instead of the step.
+    /// Whether the outcome is shown at the end of the part instead of the end of the step.
     #[serde(skip)]
     pub told_at_end: bool,
 }

@@ -12,8 +12,8 @@ pub struct CompetitorSetting {
     pub name: &'static str,
     /// Name of the scenario that configures the competitors.
     pub scenario: &'static str,
-    /// Minimum and maximum share of a group's quality bank that a competitor event drains; `None` keeps the values of
-    /// the scenario.
+    /// Minimum and maximum share of a group's quality bank that a competitor event drains; `None` for the
+    /// values of the scenario.
     drain_range: Option<(&'static str, &'static str)>,
 }
 
@@ -46,7 +46,7 @@ pub const DRAIN_SETTINGS: [CompetitorSetting; 6] = [
     drain_setting("drain to 0.2", "0.0", "0.2"),
 ];
 
-/// Returns the index of the arm with which the other arms are compared.
+/// Returns the index of the arm that the other arms are compared with.
 pub fn reference_arm(settings: &[CompetitorSetting]) -> usize {
     settings.iter().position(|competitor_setting| competitor_setting.name == "default").unwrap_or(0)
 }
@@ -66,7 +66,7 @@ pub fn competitor_arms(policy: &Policy, settings: &[CompetitorSetting], days: u3
     settings.iter().map(arm).collect()
 }
 
-/// Moves arms to another scenario: differences between the arm's scenario and `default` become overrides.
+/// Moves arms to another scenario. The differences between an arm's scenario and `default` become overrides.
 ///
 /// # Errors
 /// Fails if a scenario is unknown or a parameter is invalid.

@@ -145,7 +145,8 @@ fn describe_difference(paired_difference: &PairedDifference) -> &'static str {
     }
 }
 
-/// Returns a note on how many runs are identical under default and hard competitors.
+/// Returns a note with the number of seeds for which the runs with default and hard competitors are
+/// identical.
 fn describe_equal_runs(axis: &AblationAxis<'_>) -> String {
     let place =
         |name: &str| axis.settings.iter().position(|competitor_setting| competitor_setting.name == name);

@@ -33,7 +33,8 @@ fn copying_hurts_shared_and_draining_hurts_targeted_development() {
         let [off, default, hard] = [0, 1, 2].map(|arm| at(&copy, arm)[seed]);
         assert!(off > default && default >= hard, "{off} {default} {hard}");
     }
-    // With targeted spending alone, default and hard competitors have the same effect, but draining has a different effect.
+    // If spending is only targeted, default and hard competitors have the same effect, but draining has a
+    // different one.
     let drain = play_arms(
         &targeted,
         &pick(&DRAIN_SETTINGS, &["no drain", "default", "hard", "drain to 0.2"]),

@@ -152,7 +152,7 @@ impl PolicyGrid {
     }
 }
 
-/// Rule for the names of axes and levels, worded for use in error messages.
+/// Requirement for the names of axes and levels, worded for error messages.
 const NAME_REQUIREMENT: &str =
     "is one line of text without \" / \", which separates the levels of a combination";
 
@@ -220,7 +220,7 @@ impl GridReader<'_> {
         Ok(levels)
     }
 
-    // Checks that the part shared by all combinations is a valid policy.
+    // Checks that the part that all combinations share is a valid policy.
     fn check_base(&self, base: Option<&(std::ops::Range<usize>, Table)>) -> Result<(), PolicyError> {
         let Some((span, table)) = base else { return Ok(()) };
         let parsed = parse_policy(table.clone(), "policy").map_err(|problem| (span.clone(), problem));
@@ -250,7 +250,7 @@ impl GridReader<'_> {
                     calls.extend(level.calls.iter().cloned());
                 }
             }
-            // The previous levels were valid, so the error is in this level.
+            // The policy was valid with the previous levels, so the error is in this level.
             let checked = parse_policy(table.clone(), grid);
             checked.map_err(|problem| {
                 self.error_at_key(level.span.clone(), &format!("level {}: {problem}", level.name))

@@ -1,5 +1,5 @@
-//! Tables of configurations. For one seed, the tables have the paper's columns; for several seeds, they show spread
-//! and rank stability.
+//! Tables of configurations. For one seed, the tables have the paper's columns. For several seeds, the tables
+//! show the spread over the seeds and the stability of the ranks.
 
 use super::grid::PolicyGrid;
 use crate::experiment::{ExperimentResults, RunResult};
@@ -39,7 +39,7 @@ pub fn baseline_report(grid: &PolicyGrid, is_published: bool, results: &Experime
 /// Results of an experiment with the rank of each configuration.
 struct RankedResults<'a> {
     results: &'a ExperimentResults,
-    /// Indices of the configurations by median final cash, highest first.
+    /// Indices of the configurations, sorted by median final cash, highest first.
     order: Vec<usize>,
     /// Ranks of the configurations, by seed and configuration.
     ranks_by_seed: Vec<Vec<f64>>,
@@ -184,7 +184,8 @@ fn best_by_seed_table(grid: &PolicyGrid, ranked: &RankedResults<'_>) -> LabTable
     table
 }
 
-/// Describes the configurations that share the first rank: the name of one configuration and the number of ties.
+/// Describes the configurations that share the first rank: names one of them and states the number of the
+/// others.
 fn describe_ties(grid: &PolicyGrid, first: &[usize]) -> String {
     match first {
         [] => String::new(),

@@ -1,12 +1,12 @@
-//! Detection of equal runs. Configurations that differ only in their cash floor make the same decisions until cash is
-//! between the floors. Runs with the same decisions are simulated only once.
+//! Detection of equal runs. Configurations that differ only in their cash floor make the same decisions until
+//! cash is between their floors on a decision day. Runs with the same decisions are simulated only once.
 
 use super::grid::GridPoint;
 use crate::experiment::RunResult;
 use crate::policy::{Policy, RuleBased};
 
-/// Returns for each configuration the index of its representative: the configuration with the lowest cash floor among the
-/// otherwise equal configurations.
+/// Returns the index of each configuration's representative: the configuration with the lowest cash floor
+/// among those that differ only in their cash floor.
 pub fn representative_configurations(points: &[GridPoint]) -> Vec<usize> {
     let floor = |at: usize| cash_floor(&points[at].policy);
     let representative = |at: usize| {

@@ -65,7 +65,7 @@ fn note_versions(lines: &[Line]) -> Vec<NoteVersion> {
     .collect()
 }
 
-/// Names of the figures as in `lab compare`, each with its horizon and column heading.
+/// Names of the figures in `lab compare`, each with its horizon and column heading.
 const FIGURE_COLUMNS: [(&str, &str, &str); 10] = [
     ("survival", "", "survival, days"),
     ("ad spend on the truly best channel", "", "ads on best channel"),
@@ -202,7 +202,7 @@ fn tool_table(runs: &[BehaviorRun]) -> LabTable {
     LabTable { rows, ..LabTable::new("tools", "Most-used tools", columns) }
 }
 
-/// Shares of a run's weeks after which the customers are listed.
+/// Points of a run at which customers are listed, as shares of the run's weeks.
 const SAMPLED_RUN_SHARES: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 
 fn customer_table(runs: &[BehaviorRun]) -> LabTable {
@@ -315,7 +315,7 @@ fn note_table(runs: &[BehaviorRun]) -> LabTable {
     LabTable { rows, ..LabTable::new("notes", "Versions of the notes", columns) }
 }
 
-/// Returns a pair of first-weeks forecast error and survival for each run with the two figures.
+/// Returns the forecast error of the first weeks and the survival of each run that has both figures.
 fn forecast_error_survival_pairs(runs: &[BehaviorRun]) -> Vec<(f64, f64)> {
     let of = |name, horizon, run: &BehaviorRun| find_figure(name, horizon)?.value(&run.logbook);
     runs.iter()

@@ -16,12 +16,12 @@ pub const CASES: &[BenchCase] = &[
         name: "day",
         figures: &[
             BenchFigure::with_target(
-                "a day at 165,000, database in the background",
+                "a day at 165,000 subscribers, database in the background",
                 BenchUnit::Milliseconds,
                 10.0,
                 Some(4.0),
             ),
-            BenchFigure::without_target("a day at 165,000, in memory", BenchUnit::Milliseconds),
+            BenchFigure::without_target("a day at 165,000 subscribers, in memory", BenchUnit::Milliseconds),
         ],
         needs_new_process: false,
         is_slow: false,
@@ -31,14 +31,14 @@ pub const CASES: &[BenchCase] = &[
         name: "million",
         figures: &[
             BenchFigure::with_target(
-                "a day at 1,000,000, database in the background",
+                "a day at 1,000,000 subscribers, database in the background",
                 BenchUnit::Milliseconds,
                 60.0,
                 Some(25.0),
             ),
-            BenchFigure::without_target("a day at 1,000,000, in memory", BenchUnit::Milliseconds),
+            BenchFigure::without_target("a day at 1,000,000 subscribers, in memory", BenchUnit::Milliseconds),
             BenchFigure::with_target(
-                "peak memory at 1,000,000",
+                "peak memory at 1,000,000 subscribers",
                 BenchUnit::Megabytes,
                 1.2 * 1_073.741_824,
                 None,
@@ -87,13 +87,13 @@ pub const CASES: &[BenchCase] = &[
         name: "week",
         figures: &[
             BenchFigure::with_target(
-                "a week at 165,000: key press to dashboard",
+                "a week at 165,000 subscribers: key press to dashboard",
                 BenchUnit::Milliseconds,
                 150.0,
                 None,
             ),
             BenchFigure::with_target(
-                "a week at 165,000: key press to first query result",
+                "a week at 165,000 subscribers: key press to first query result",
                 BenchUnit::Milliseconds,
                 800.0,
                 None,
@@ -121,25 +121,25 @@ pub const CASES: &[BenchCase] = &[
         name: "scaling",
         figures: &[
             BenchFigure::with_target(
-                "cost per subscriber, 10,000 to 1,000,000: spread",
+                "cost per subscriber, 10,000 to 1,000,000 subscribers: spread",
                 BenchUnit::Percent,
                 30.0,
                 None,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber per day at 10,000",
+                "one thread, per subscriber per day at 10,000 subscribers",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber per day at 40,000",
+                "one thread, per subscriber per day at 40,000 subscribers",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber per day at 165,000",
+                "one thread, per subscriber per day at 165,000 subscribers",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber per day at 1,000,000",
+                "one thread, per subscriber per day at 1,000,000 subscribers",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
         ],
@@ -274,18 +274,19 @@ fn measure_week(bench: &BenchContext) -> Result<Samples, BenchError> {
     Ok(vec![dashboard, query])
 }
 
-/// Subscriber counts at which the cost per subscriber is compared, in the default market.
+/// Numbers of subscribers for which the cost per subscriber is compared, in the default market.
 const SUBSCRIBER_COUNTS: [u32; 3] = [10_000, 40_000, 165_000];
 /// Maximum number of weeks measured per company. After more weeks, the company has grown too far beyond its nominal size.
 const MAX_WEEKS_PER_SIZE: usize = 5;
 
-/// Uses one thread, because the gain of a second thread depends on wake-up latency. This latency is the same for a
+/// Uses one thread. The gain from a second thread depends on its wake-up latency, which is the same for a
 /// company of any size.
 fn measure_scaling(bench: &BenchContext) -> Result<Samples, BenchError> {
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| measure_costs_by_size(bench))
 }
 
-/// Measures the companies in turn, so that a slow period of the machine affects all companies equally.
+/// Measures one week of each company in turn, so that a slow period of the machine affects all companies
+/// equally.
 fn measure_costs_by_size(bench: &BenchContext) -> Result<Samples, BenchError> {
     // The companies start slightly smaller, because they grow during the measurement.
     let sized_companies = SUBSCRIBER_COUNTS

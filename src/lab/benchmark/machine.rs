@@ -6,16 +6,15 @@ use std::time::Instant;
 
 const CALIBRATION_STEPS: u64 = 60_000_000;
 
-/// Returns the time in seconds that a fixed amount of integer and floating-point work takes on one processor. With
-/// this time, figures of different machines can be compared.
+/// Returns the time in seconds that a fixed amount of integer and floating-point work takes on one processor.
+/// Figures of different machines can be compared relative to this time.
 pub fn calibration_seconds() -> f64 {
     let started = Instant::now();
     black_box(run_fixed_work(black_box(CALIBRATION_STEPS)));
     started.elapsed().as_secs_f64()
 }
 
-/// Each step depends on the previous step, like the terms of a formula. A step consists of shifts, a multiplication, a
-/// division and a root.
+/// Each step depends on the previous step and consists of shifts, a multiplication, a division and a root.
 fn run_fixed_work(steps: u64) -> f64 {
     let (mut word, mut value) = (0x9e37_79b9_7f4a_7c15_u64, 1.0_f64);
     for _ in 0..steps {

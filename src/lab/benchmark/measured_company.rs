@@ -1,4 +1,4 @@
-//! Companies for measurements: policy P1a, played up to a given number of subscribers.
+//! Companies for measurements. Policy P1a is played until a company has a given number of subscribers.
 
 use std::time::Instant;
 
@@ -45,7 +45,7 @@ pub struct MeasuredCompany {
 pub struct WeekMeasurement {
     /// Seconds from the key press to the updated dashboard.
     pub seconds: f64,
-    /// Active subscribers in the middle of the week.
+    /// Number of active subscribers in the middle of the week.
     pub subscribers: f64,
 }
 

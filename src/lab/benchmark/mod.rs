@@ -4,25 +4,26 @@
 //! one or more [`BenchFigure`]s. The value of a figure is the median of its samples. [`CASES`] covers the simulator.
 //! Other crates can add cases, for example for the console.
 //!
-//! **Where the subscribers come from.** All cases play the policy P1a (the paper's best configuration) with seed 42.
-//! The 500-day figures play the same company. The company reaches 10,000, 40,000 and 165,000 subscribers without
-//! intervention. A measured day therefore includes realistic leads, bills, switches, cancellations and support issues,
-//! not synthetic subscribers. The default market is too small for a million subscribers, so these cases use a larger
-//! market: with `leads.saturation_base` = b, the unused share is b - (N / cap)². In the larger market the company
-//! starts with more cash, because it could not otherwise pay for its faster growth. The larger company is measured
-//! only after all its subscribers have been billed once.
+//! **Where the subscribers come from.** All cases play the policy P1a (the paper's best configuration) with
+//! seed 42. The 500-day figures play the same company. The company reaches 10,000, 40,000 and 165,000
+//! subscribers without intervention. A measured day therefore includes realistic leads, bills, switches,
+//! cancellations and support issues, not synthetic subscribers. The default market is too small for a million
+//! subscribers, so these cases use a larger market: with `leads.saturation_base` = b, the unused share is b -
+//! (N / cap)². In the larger market, the company starts with more cash, because otherwise it could not pay
+//! for its faster growth. The larger company is measured only after all its subscribers have been billed
+//! once.
 //!
-//! **What a sample is.** Days are measured in weeks, as they are played. A sample includes the seven days, the
-//! figures, the state hash and the lines of the trajectory. The time is divided by seven and scaled from the actual
-//! number of subscribers to the number in the figure's name. The two numbers differ by less than a fifth. The
-//! decisions of the policy are not measured.
-//! If the projection runs in the background, the case waits for it between weeks, as a user who reads the dashboard
-//! does. The cost per subscriber is compared on one thread. The gain of a second thread depends on its wake-up
-//! latency, which is the same for small and large companies.
+//! **What a sample is.** Days are measured in weeks, as they are played. A sample includes the seven days,
+//! the figures, the state hash and the lines of the trajectory. The time is divided by seven and scaled from
+//! the actual number of subscribers to the number in the figure's name. The two numbers differ by less than a
+//! fifth. The decisions of the policy are not measured. If the projection runs in the background, the case
+//! waits for it between weeks, as a user who reads the dashboard does. The cost per subscriber is compared on
+//! one thread, because the gain from a second thread depends on its wake-up latency, which is the same for
+//! small and large companies.
 //!
 //! # Where the time goes
 //!
-//! Measured between the steps of a day on one thread of an EPYC, P1a (seed 42) at 172,000 subscribers:
+//! Share of the time of a day by step, on one thread of an EPYC, for P1a (seed 42) with 172,000 subscribers:
 //!
 //! | share | step |
 //! |---|---|
@@ -37,19 +38,20 @@
 //! | 15 % | state hash, once a week |
 //! | 3 % | the rest |
 //!
-//! On two threads, about 95 % of this work runs in parallel. The following changes made the simulation faster and kept
-//! results bit-identical. Several mechanisms process a block in one pass, while the block is in the cache. Work units are as
-//! small as two blocks, because subscribers who signed up on one day are adjacent and due on the same day. The state
-//! hash is a tree, and each thread hashes the bytes that it collected. The work after a day runs in parallel with the
-//! next day, or with the state hash after the last day. Fact buffers are reused after the database writer has
-//! processed them. Loops process several rows at a time without branches and without access to shared data, so that
-//! the compiler can vectorize them. Vectorization fails if a parameter is read only under a condition, through a
-//! reference that the compiler cannot prove dereferenceable.
+//! On two threads, about 95 % of this work runs in parallel. The following changes made the simulation faster
+//! and kept results bit-identical. Several mechanisms process a block in one pass, while the block is in the
+//! cache. Work units are as small as two blocks, because subscribers who signed up on one day are adjacent
+//! and due on the same day. The state hash is a tree, and each thread hashes the bytes that it collected. The
+//! work after a day runs in parallel with the next day, or with the state hash after the last day. Fact
+//! buffers are reused after the database writer has processed them. Loops process several rows at a time
+//! without branches and without access to shared data, so that the compiler can vectorize them. Vectorization
+//! fails if a parameter is read only under a condition through a reference, because the compiler cannot prove
+//! that the reference is dereferenceable.
 //!
-//! The following changes did not make the simulation faster: prefetching the columns of a block, other purge delays
-//! and page sizes
-//! of the allocator, post weights without a branch, and work units of one block. Keeping a second thread awake between
-//! the steps of a day did not help either, on two processors of one core.
+//! The following changes did not make the simulation faster: prefetching the columns of a block, other purge
+//! delays and page sizes of the allocator, post weights without a branch, and work units of one block.
+//! Keeping a second thread awake between the steps of a day did not help either, on two hardware threads of
+//! one core.
 //!
 //! The first days of a week are slower with a database than in memory, because both threads slept before the week. A
 //! company in memory is equally slow if the program sleeps for a second before each week.
@@ -60,8 +62,9 @@
 //! 165,000 subscribers, and 18 ms with a million. The remaining time is spent on arithmetic, signups, payments and
 //! cancellations, not on passes over columns.
 //!
-//! **Streams.** Every lead and every bill opens a stream. Opening a single stream took 180 ns (BLAKE3, then ChaCha8,
-//! each a chain of dependent steps). Opening eight streams at a time takes 50 ns per stream with one draw (`world::random`).
+//! **Streams.** Every lead and every bill opens a stream. Opening a single stream takes 180 ns (BLAKE3, then
+//! ChaCha8, each of which is a chain of dependent steps). If eight streams are opened at a time, opening a
+//! stream and making one draw takes 50 ns (`world::random`).
 
 mod cases;
 mod machine;
@@ -129,9 +132,9 @@ pub struct BenchFigure {
     pub name: &'static str,
     /// Unit of the measured values.
     pub unit: BenchUnit,
-    /// Maximum allowed value; `None` without a target.
+    /// Maximum allowed value; `None` if the figure has no target.
     pub target: Option<f64>,
-    /// Maximum desired value; `None` without a stretch target.
+    /// Maximum desired value; `None` if the figure has no stretch target.
     pub stretch: Option<f64>,
 }
 
@@ -191,7 +194,8 @@ impl BenchFigure {
     }
 }
 
-/// Samples of each figure of a case, in order. The samples are empty if the system does not report the figure.
+/// Samples of each figure of a case, in the order of the figures. A list is empty if the system does not
+/// report the figure.
 pub type Samples = Vec<Vec<f64>>;
 
 /// A benchmark case, which is measured in a separate process.

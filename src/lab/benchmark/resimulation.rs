@@ -16,25 +16,35 @@ const BRANCH_WEEKS: u32 = 12;
 /// Edits of the alternative branches. One additional branch keeps the decisions of the run.
 const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "set_daily_spend * 1.1"];
 
-/// Figures of what-if branches and causes. A company with 20,000 subscribers grows fast, so the what-if covers weeks
-/// with this average. The first answer about a run reads its record and simulates the run from day 0. Later answers
-/// reuse this simulation.
+/// Figures of what-if branches and causes. A small company grows fast, so the what-if covers weeks in which
+/// the company has 20,000 subscribers on average. For the first answer about a run, the program reads the
+/// record and simulates the run from day 0. Later answers reuse this simulation.
 pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::with_target(
-        "what if, 4 branches of 12 weeks of 20,000: next answer",
+        "what if, 4 branches of 12 weeks, 20,000 subscribers: next answer",
         BenchUnit::Seconds,
         0.5,
         None,
     ),
     BenchFigure::without_target(
-        "what if, 4 branches of 12 weeks of 20,000: first answer",
+        "what if, 4 branches of 12 weeks, 20,000 subscribers: first answer",
         BenchUnit::Seconds,
     ),
-    BenchFigure::with_target("why of a week at 20,000: first answer", BenchUnit::Seconds, 1.0, None),
-    BenchFigure::with_target("why of a week at 165,000: first answer", BenchUnit::Seconds, 8.0, None),
+    BenchFigure::with_target(
+        "why of a week at 20,000 subscribers: first answer",
+        BenchUnit::Seconds,
+        1.0,
+        None,
+    ),
+    BenchFigure::with_target(
+        "why of a week at 165,000 subscribers: first answer",
+        BenchUnit::Seconds,
+        8.0,
+        None,
+    ),
 ];
 
-/// Measures companies with the subscriber counts that the figures name.
+/// Measures companies with the numbers of subscribers in the names of the figures.
 pub fn measure_resimulation(bench: &BenchContext) -> Result<Samples, BenchError> {
     let mut company = MeasuredCompany::with_subscribers(SMALL_SUBSCRIBERS, RunStorage::Disk, bench)?;
     let small = measure_cause_analysis(&company.session, bench.repetitions)?;

@@ -20,9 +20,9 @@ pub struct BoundGroup {
     pub customers: f64,
     /// Price per customer or seat, $ per month.
     pub price: f64,
-    /// Widest quality gap that targeted development must close.
+    /// Largest quality gap that targeted development must close.
     pub quality_gap: f64,
-    /// Spending that closes the gap exactly, before slack, $ per day.
+    /// Spending that closes the gap exactly, without slack, $ per day.
     pub min_spending: f64,
     /// Spending with slack, $ per day.
     pub spending: f64,
@@ -69,17 +69,17 @@ pub struct SensitivityRow {
     pub slack: f64,
     /// Cost of targeted development, dollars.
     pub targeted: f64,
-    /// Number of renewals at which more than 99 % of the group's customers are satisfied.
+    /// Number of group renewals at which more than 99 % of the group's customers are satisfied.
     pub satisfied: usize,
-    /// Total number of renewals over all groups and renewal days.
+    /// Total number of group renewals: number of groups times number of renewal days.
     pub renewals: usize,
     /// Mean renewal share over groups and renewal days.
     pub mean_share: f64,
-    /// Estimate that the account reports, dollars.
+    /// Reported estimate, dollars.
     pub estimate: f64,
 }
 
-/// Share of satisfied customers above which a group counts as nearly fully satisfied.
+/// A group renewal counts as nearly full if the share of satisfied customers exceeds this value.
 pub const SATISFIED_SHARE: f64 = 0.99;
 
 impl BoundAccount {
@@ -198,7 +198,7 @@ impl BoundAccount {
 pub fn sensitivity(slacks: &[f64], params: &Params) -> Vec<SensitivityRow> {
     let premises = |slack: &f64| BoundAssumptions::from_paper(*slack);
     let Some(first) = slacks.first() else { return Vec::new() };
-    // Slack does not change market conditions, because competitors copy in proportion to a targeted gain.
+    // One path is valid for every slack, because competitors copy in proportion to a targeted gain.
     let quality_path = shared_quality_path(&premises(first), params);
     slacks
         .iter()

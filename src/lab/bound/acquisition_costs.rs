@@ -9,7 +9,8 @@ use novamind_world::params::Params;
 /// Number of steps of the numerical integration over market saturation.
 const INTEGRATION_STEPS: u32 = 20_000;
 
-/// Returns the cost in dollars of filling a group's market by the first renewal with ads in the group's best channel.
+/// Returns the cost in dollars of ads in the group's best channel that fill the group's market by the first
+/// renewal.
 pub fn advertising_cost(group: Group, premises: &BoundAssumptions, params: &Params) -> f64 {
     let group_params = params.group(group);
     let first = premises.renewals.first().copied().unwrap_or(premises.days);
@@ -21,8 +22,8 @@ pub fn advertising_cost(group: Group, premises: &BoundAssumptions, params: &Para
     group_params.base_market_cap * saturation_factor(group_params.base_market_cap / market, params) / leads
 }
 
-/// Returns the mean cost per customer up to a market share, relative to the cost of the first customer. The cost
-/// increases as the market fills.
+/// Returns the mean cost per customer until a share `taken` of the market is reached, relative to the cost of
+/// the first customer. The cost increases as the market fills.
 fn saturation_factor(taken: f64, params: &Params) -> f64 {
     let leads = &params.leads;
     let cost = |step: u32| {

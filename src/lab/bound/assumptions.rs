@@ -25,7 +25,8 @@ pub struct BoundAssumptions {
     pub operations: f64,
     /// Spending on operations per customer or seat, $ per day.
     pub operations_each: f64,
-    /// Share of a day's targeted gain that is assumed to remain when spending is set. Competitors drain the remaining share.
+    /// Share of a day's targeted gain that is assumed to last when spending is computed. Competitors drain
+    /// the rest.
     pub counted_gain: f64,
     /// Study level of every group.
     pub study_level: u8,
@@ -57,7 +58,7 @@ impl BoundAssumptions {
         }
     }
 
-    /// Returns the mean age, in days, of the targeted development spending at the end of the account.
+    /// Returns the mean age of the targeted development spending at the end of the account, days.
     pub fn mean_spending_age(&self) -> f64 {
         f64::from(self.days) / 2.0
     }

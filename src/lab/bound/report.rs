@@ -1,4 +1,5 @@
-//! Tables of the account next to the published account, the sensitivity to slack, the groups and the assumptions.
+//! Tables of the account compared with the published account, of its sensitivity to slack, of the groups and
+//! of the assumptions.
 
 use super::account::{BoundAccount, SATISFIED_SHARE, SensitivityRow};
 use super::account_line::AccountLine;
@@ -139,7 +140,7 @@ fn renewal_graph(account: &BoundAccount) -> Graph {
         y_axis: GraphAxis { label: "share", scale: AxisScale::Linear },
         series: vec![
             series("lowest group", &|at| of_day(at).fold(1.0, f64::min)),
-            series("most", &|at| of_day(at).fold(0.0, f64::max)),
+            series("highest group", &|at| of_day(at).fold(0.0, f64::max)),
             series("mean", &|at| of_day(at).sum::<f64>() / count),
         ],
         form: GraphForm::Lines,

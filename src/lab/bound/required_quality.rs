@@ -1,4 +1,5 @@
-//! mu, sigma and d: the distribution of the quality required at the highest price, and the increase in the mean until a day.
+//! mu, sigma and d: the distribution of the quality required at the highest price, and the increase of its
+//! mean up to a day.
 
 use super::shared_quality::SharedQualityPath;
 use novamind_world::customers::drift::{global_drift_step, group_drift_step, is_drift_day};
@@ -14,8 +15,8 @@ pub fn required_quality(group: Group, params: &Params) -> (f64, f64) {
     )
 }
 
-/// Returns the increase in a group's expectations due to competitors and drift until a day. Excludes the quality that
-/// competitors copy from the group's quality bank.
+/// Returns the increase in a group's expectations up to a day that is due to competitors and drift. Excludes
+/// the quality that competitors copy from the group's quality bank.
 pub fn added_expectation(group: Group, day: u32, quality_path: &SharedQualityPath, params: &Params) -> f64 {
     let applied = (1..day).filter(|day| is_drift_day(*day, &params.drift)).count() as f64;
     let taste = applied * (group_drift_step(group, params).quality + global_drift_step(&params.drift));

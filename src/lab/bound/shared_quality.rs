@@ -20,11 +20,12 @@ pub struct SharedQualityPath {
     pub shared: Vec<f64>,
     /// Increase in all customers' expectations due to competitors.
     pub raised_expectations: Vec<f64>,
-    /// Quality that competitors copied from a group's quality bank, if the targeted gain is 1 per day.
+    /// Quality that competitors have copied from a group's quality bank, for a targeted gain of 1 per day.
     pub copied_quality: Vec<ByGroup<f64>>,
 }
 
-/// Returns the quality gain from the R&D projects that finish on a day, with the mean duration and mean gain of each tier.
+/// Returns the quality gain from the R&D projects that finish on a day, if each project has the mean duration
+/// and mean gain of its tier.
 fn research_gain_on(day: u32, premises: &BoundAssumptions, params: &Params) -> f64 {
     let done = |tier: &u8| {
         let research_tier = params.research_tier(*tier);
@@ -48,8 +49,8 @@ pub fn shared_quality_path(premises: &BoundAssumptions, params: &Params) -> Shar
     mean
 }
 
-/// Adds the contribution of one seed to the means. The order within a day equals the order in the simulator: R&D,
-/// competitors, development.
+/// Adds the contribution of one seed to the means. Within a day, the steps have the same order as in the
+/// simulator: R&D, competitors, development.
 fn add_seed(seed: u64, premises: &BoundAssumptions, params: &Params, mean: &mut SharedQualityPath) {
     let (streams, share) = (Streams::new(seed), 1.0 / SEED_COUNT as f64);
     let (mut product, mut drift, mut events) = (Product::initial(params), DriftTotals::default(), Vec::new());

@@ -6,8 +6,8 @@ use super::shared_quality::SharedQualityPath;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Returns the widest gap on any renewal day between the quality that the mean customer requires and shared quality.
-/// The unit is quality before the multiplier of the model tier.
+/// Returns the largest gap between the quality that the mean customer requires and shared quality, over all
+/// renewal days. The unit is quality before the multiplier of the model tier.
 pub fn widest_gap(
     group: Group,
     overload: f64,

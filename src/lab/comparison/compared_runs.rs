@@ -56,7 +56,7 @@ pub struct PublishedRange {
 pub struct Comparison {
     /// Names of the compared runs.
     pub runs: Vec<String>,
-    /// Participant of each run; `None` for runs without a label.
+    /// Participant of each run; `None` if the run has no label.
     pub participants: Vec<Option<String>>,
     /// Scenario of each run.
     pub scenarios: Vec<String>,
@@ -66,7 +66,7 @@ pub struct Comparison {
     pub horizons: Vec<(u32, HorizonRule)>,
     /// Whether all runs have the same generation. Runs of different generations are not ranked.
     pub is_ranked: bool,
-    /// Indices into `runs`, best result first; in the order of `runs` if the runs are not ranked.
+    /// Indices into `runs`, sorted by result, best first; in the order of `runs` if the runs are not ranked.
     pub order: Vec<usize>,
     /// Last simulated day of each run, with the reason for the end; `None` if the run is unfinished.
     pub ends: Vec<(u32, Option<RunEndReason>)>,
@@ -76,7 +76,7 @@ pub struct Comparison {
     pub cash: Vec<ComparisonRow>,
     /// Decisions of all runs before each week.
     pub decisions: Vec<ComparedDecisions>,
-    /// Reasons why the runs are not comparable with each other or with published runs.
+    /// Reasons why the figures of the runs are not comparable with each other or with published figures.
     pub caveats: Vec<String>,
 }
 

@@ -16,7 +16,8 @@ pub struct ComparedFigure {
     published: fn() -> Option<PublishedRange>,
 }
 
-/// Returns a figure of the whole run by its name and horizon. A test checks that all names in the code exist.
+/// Returns a figure of the whole run by its name and its horizon. A test checks that all names used in the
+/// code exist.
 pub fn find_figure(name: &str, of: &str) -> Option<&'static ComparedFigure> {
     FIGURES.iter().find(|figure| figure.name == name && figure.qualifier == of)
 }

@@ -63,7 +63,7 @@ pub(super) fn row_per_run_report(comparison: &Comparison) -> LabReport {
     exhibit.with_note("Use --csv for cash by week and all figures, --json to add decisions.")
 }
 
-/// Maximum number of characters in a label; with longer labels, a row would not fit on one line.
+/// Maximum number of characters in a label. With longer labels, a row would not fit on one line.
 const LABEL_WIDTH: usize = 12;
 
 fn short_label(participant: Option<&str>) -> String {

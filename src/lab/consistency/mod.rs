@@ -1,4 +1,4 @@
-//! Plays two policies and tests claim by claim whether both policies receive the same random draws
+//! Plays two policies and tests, claim by claim, whether both policies receive the same random draws
 //! (docs/laboratory/consistency.md).
 //!
 //! Each claim is tested on two plays with the same seed. A control play with another seed shows that the claim could
@@ -20,12 +20,13 @@ pub use random_draws::PlayEnd;
 /// Difference between the control seed and the tested seed.
 const CONTROL_SEED_OFFSET: u64 = 1_000_003;
 
-/// The selection of values that are compared between two plays.
+/// Which values of two plays are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ComparedKeys {
-    /// Values that both plays have. Plays can differ in the number of values, for example of attempts.
+    /// Values that both plays have. The plays can have different numbers of values, for example of attempts.
     Common,
-    /// All values until the earlier end of the two plays. A value that only one play has counts as a difference.
+    /// All values up to the end of the play that ended first. A value that only one play has counts as a
+    /// difference.
     UntilFirstEnd,
 }
 
@@ -33,7 +34,7 @@ enum ComparedKeys {
 struct Claim {
     /// Text of the claim.
     statement: &'static str,
-    /// Noun for the compared values, singular and plural.
+    /// Noun for the compared values, in singular and plural.
     unit_names: (&'static str, &'static str),
     /// Function that returns the compared values of a play.
     draws: fn(&PlayDraws) -> &DrawMap,
@@ -121,7 +122,7 @@ const CLAIMS: &[Claim] = &[
         format_key: day_key_name,
     },
     Claim {
-        statement: "outages occur on a day at the same outage probability",
+        statement: "on each day, outages occur at the same outage probability in all runs",
         unit_names: ("day", "days"),
         draws: |luck| &luck.outages,
         compared_keys: ComparedKeys::Common,
@@ -178,13 +179,13 @@ pub struct ClaimResult {
     pub claim: &'static str,
     /// Number of compared values over all seeds.
     pub compared: usize,
-    /// Noun for the compared values, in the matching number.
+    /// Noun for the compared values, in singular or plural according to their number.
     pub of: &'static str,
     /// Number of compared values that differ.
     pub different: usize,
-    /// Number of values that were compared with the values of another seed.
+    /// Number of values that were compared with values from the play with the control seed.
     pub compared_with_other_seed: usize,
-    /// Number of values that differ under another seed.
+    /// Number of values that differ under the control seed.
     pub different_under_other_seed: usize,
     /// Description of the first difference.
     pub first_difference: Option<String>,
@@ -199,7 +200,7 @@ pub struct ConsistencyCheck {
     pub policies: [String; 2],
     /// Results of both policies on the first seed.
     pub ends: [PlayEnd; 2],
-    /// Whether both policies led to the same final states, in which case nothing was tested.
+    /// Whether both policies ended in the same state on every seed, in which case nothing was tested.
     pub ends_in_same_state: bool,
     /// Whether one policy switches demand surges off but was played with demand surges.
     pub equalizes_surges: bool,

@@ -1,4 +1,4 @@
-//! Random outcomes of a play, which are read from its world day by day.
+//! Random outcomes of a play, which are read day by day from the world of the play.
 
 use std::collections::BTreeMap;
 
@@ -102,7 +102,7 @@ impl PlayDraws {
         self.attempts.insert([self.attempts.len() as u32 + 1, 0], [found, 0, 0, 0]);
     }
 
-    /// Records the draws of the next day that the world does not store.
+    /// Records those draws of the next day that the world does not store.
     fn record_next_draws(&mut self, session: &mut Session) -> Result<(), Rejection> {
         let day = session.day();
         for KeyedDraws { group, effect: follows, .. } in

@@ -11,7 +11,7 @@ pub struct Histogram {
     pub counts: Vec<u64>,
 }
 
-/// Share of draws at each end that the outer bins include, so that outliers do not widen all bins.
+/// Share of the draws at each end that are counted in the outer bins, so that outliers do not widen all bins.
 const TAIL_SHARE: f64 = 0.001;
 
 impl Histogram {

@@ -23,7 +23,7 @@ impl DrawContext {
     }
 }
 
-/// The family of items for which a draw is made separately.
+/// The items for which a draw is made separately.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DrawFamily {
     /// No family; the draw is made once.
@@ -71,7 +71,7 @@ pub struct WorldDraw {
     pub description: &'static str,
     /// Part of the simulator whose random streams the draw uses.
     pub part: Part,
-    /// Family of items for which the draw is made.
+    /// Items for which the draw is made separately.
     pub family: DrawFamily,
     /// Parameters on which the distribution depends.
     pub parameters: &'static [&'static str],

@@ -1,5 +1,5 @@
-//! The engine of experiments. The engine plays all runs without a stored result in parallel, until the experiment is
-//! complete or stopped.
+//! The engine of experiments. The engine plays all runs that have no stored result in parallel, until the
+//! experiment is complete or stopped.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -167,7 +167,8 @@ impl PreparedExperiment<'_> {
         self.pending_runs(numbers).len()
     }
 
-    /// Adds `run` as the result of an arm's run with the same seed. The caller must know that the two runs are identical.
+    /// Adds `run` as the result of an arm's run with the same seed. The caller must ensure that the two runs
+    /// are identical.
     pub fn add_result(&mut self, arm: usize, run: &RunResult) {
         let seeds = &self.experiment.seeds;
         let place = seeds.iter().position(|seed| *seed == run.seed);
@@ -194,7 +195,8 @@ impl PreparedExperiment<'_> {
     /// Plays the remaining runs and returns all results.
     ///
     /// # Errors
-    /// Fails if a run cannot be played, a result cannot be stored, or the experiment is stopped. Earlier results stay stored.
+    /// Fails if a run cannot be played, if a result cannot be stored, or if the experiment is stopped.
+    /// Earlier results remain stored.
     pub fn run(self, with: &ExperimentContext<'_>) -> Result<ExperimentResults, ExperimentError> {
         let (seeds, arms) = (self.experiment.seeds.clone(), self.experiment.arms.len());
         let all = self.run_numbers();

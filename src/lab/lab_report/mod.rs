@@ -42,7 +42,7 @@ pub struct LabTable {
     pub rows: Vec<Vec<CellValue>>,
     /// Summary rows. In text, summary rows follow a rule. In JSON, summary rows are separate from the rows.
     pub summary: Vec<Vec<CellValue>>,
-    /// Whether the table is too long for text. The text then names the export option instead.
+    /// Whether the table is too long for text, which then contains only the option that exports the table.
     pub is_machine_readable_only: bool,
 }
 

@@ -87,8 +87,8 @@ impl<'a> TextLayout<'a> {
         self.total_width() <= width
     }
 
-    /// Narrows the widest text columns until the table fits. If the table cannot fit, narrows only the columns that
-    /// name the rows, so that each other column fits next to these columns.
+    /// Narrows the widest text columns until the table fits. If the table cannot fit, narrows only the
+    /// columns that name the rows, so that every other column fits next to them.
     fn narrow_columns(mut self, width: usize) -> TextLayout<'a> {
         let min = |at: usize| match self.columns[at].kind {
             ColumnKind::Text => self.widths[at].min(MIN_TEXT_WIDTH),
@@ -128,8 +128,8 @@ impl<'a> TextLayout<'a> {
         TextLayout { columns, cells, rows, widths }
     }
 
-    /// Returns how many leading text columns are needed to identify each row. Returns 1 if even all leading text
-    /// columns do not identify each row.
+    /// Returns how many leading text columns are needed to identify each row. Returns 1 if not even all of
+    /// them together identify each row.
     fn count_identifying_columns(&self) -> usize {
         let is_words =
             |at: &usize| self.columns.get(*at).is_some_and(|column| column.kind == ColumnKind::Text);
@@ -231,8 +231,8 @@ fn longest_word(text: &str) -> usize {
     text.split(' ').map(UnicodeWidthStr::width).max().unwrap_or(0)
 }
 
-/// Wraps a text at spaces. A word that is too long is broken after a punctuation character, or anywhere if it contains
-/// none. Returns no lines for an empty text.
+/// Wraps a text at spaces. A word that is too long is broken after a punctuation character, or anywhere if it
+/// contains no punctuation. Returns no lines for an empty text.
 pub(super) fn wrap_text(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {

@@ -42,7 +42,7 @@ struct DailyValue {
     figure: &'static str,
     group: &'static str,
     kind: Aggregation,
-    /// Value of the day; `None` if undefined, for example a mean over no customers.
+    /// Value of the day; `None` if the value is undefined, for example a mean over no customers.
     value: Option<f64>,
 }
 
@@ -56,9 +56,10 @@ pub struct MetricsCollector {
     windows: Vec<VecDeque<f64>>,
     /// Running total of open issues.
     open_issues: f64,
-    /// Cancelled enterprises, by the day on which the subscription ends. This day can be in the future.
+    /// Number of cancelled enterprises, by the day on which their subscription ends. This day can be in the
+    /// future.
     lost_enterprises: BTreeMap<u32, ByGroup<f64>>,
-    /// Number of the next thread at the end of the previous day.
+    /// Number that the next thread had at the end of the previous day.
     next_thread: u32,
     figures: Vec<MetricValue>,
     last_day: u32,
@@ -158,7 +159,7 @@ struct MetricsDay<'a> {
     open_issues: f64,
     /// Enterprises whose subscription ends on the day, by group.
     companies_left: ByGroup<f64>,
-    /// Number of threads opened since the previous day, including threads that the player started.
+    /// Number of threads that were opened since the previous day, including threads that the player started.
     threads_opened: u32,
 }
 

@@ -134,8 +134,8 @@ impl fmt::Display for PolicyError {
 impl std::error::Error for PolicyError {}
 
 impl Policy {
-    /// Finds a policy by name, first in the user's folder and then among the bundled policies. A name with a path
-    /// separator or the ending .toml is read as a path.
+    /// Finds a policy by name, first in the user's folder and then among the bundled policies. A name that
+    /// contains a path separator or ends in `.toml` is read as a path.
     ///
     /// # Errors
     /// Fails if the policy does not exist or is invalid.

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use novamind_world::identifiers::Plan;
 
-/// Value of the cash floor with which spending is never stopped.
+/// Value of the cash floor at which spending is never stopped.
 const NO_CASH_FLOOR: f64 = -1.0;
 
 /// Settings of the weekly routine. The defaults are the paper's best configuration.
@@ -232,7 +232,8 @@ pub enum OperationsRuleName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CapacityRule {
-    /// Changes capacity by one tier per week, towards the smallest tier that serves the week's usage at 80 % utilization.
+    /// Changes the capacity tier by one per week, towards the smallest tier that serves the week's usage at
+    /// 80 % utilization.
     Utilisation,
     /// Never changes the capacity tier.
     Fixed,

@@ -1,10 +1,10 @@
-//! Several attempts of one program. One attempt is selected by the rule of the published table.
+//! Several attempts by one program, one of which is selected by the rule of the published table.
 
 use super::{FinishedRun, best_run};
 use crate::lab_report::{CellValue, Column, LabReport, LabTable, Measure};
 use novamind_base::statistics::SampleStatistics;
 
-/// An attempt of a program, which plays a new run.
+/// An attempt by a program, which plays a new run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AttemptResult {
     /// Number of the attempt, from 1.

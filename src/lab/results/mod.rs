@@ -81,7 +81,8 @@ pub enum ResultsGrouping {
     Policy,
 }
 
-/// The kind of player in a row. The kind is part of the row's key, because a participant's label can equal another name.
+/// The kind of player in a row. The kind is part of the row's key, because a participant's label can be the
+/// same as another player's name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PlayerKind {
     /// A participant with a label.
@@ -151,8 +152,8 @@ pub struct ResultsRow {
     pub std_survival_days: Option<f64>,
     /// Calls per week: state-changing calls of own runs, or turns of published agents.
     pub calls_per_week: Option<f64>,
-    /// Number of published best runs of the same generation with less final cash; `None` if there are none of the
-    /// generation.
+    /// Number of published best runs of the same generation with less final cash; `None` if no best runs of
+    /// the generation are published.
     pub beaten_count: Option<usize>,
 }
 
@@ -204,8 +205,8 @@ pub fn play_idle_company(
 }
 
 impl ResultsTable {
-    /// Creates the table of own runs, the idle company of each generation and the published rows. Notes list the reasons why runs are not
-    /// comparable.
+    /// Creates the table of own runs, the idle company of each generation and the published rows. The notes
+    /// list the reasons why runs are not comparable.
     pub fn new(
         runs: &[FinishedRun],
         left_out: &[Vec<RankingObstacle>],
@@ -305,8 +306,8 @@ fn results_row((player, name): (PlayerKind, String), runs: &[&FinishedRun]) -> O
     })
 }
 
-/// Returns the survival of a run in days. As in the published tables, a run that survived its whole weeks counts as a
-/// run that survived to [`PUBLISHED_DAYS`].
+/// Returns the survival of a run in days. As in the published tables, a run of [`PUBLISHED_WHOLE_WEEKS`] days
+/// that did not go bankrupt counts as a run that survived to [`PUBLISHED_DAYS`].
 fn published_survival(run: &FinishedRun) -> f64 {
     let is_whole = !run.is_bankrupt && run.days == PUBLISHED_WHOLE_WEEKS;
     f64::from(if is_whole { PUBLISHED_DAYS } else { run.survival_days })

@@ -80,7 +80,8 @@ impl StudySource<'_> {
         ParameterError::for_key(&self.name, self.text, key, problem)
     }
 
-    /// Returns an error at the first line of the table `within` that names the overridden key.
+    /// Returns an error that is located at the first line of the table `within` that contains the overridden
+    /// key.
     fn override_error(&self, within: &str, key: &str, problem: impl Into<String>) -> ParameterError {
         let from = line_of_key(self.text, within).unwrap_or(1);
         let names = |line: &&str| line.contains(key) || line.contains(key.rsplit('.').next().unwrap_or(key));
@@ -257,7 +258,8 @@ fn check_scenarios(source: &StudySource<'_>, study_file: &StudyFile) -> Result<(
     }
 }
 
-/// Parameters for which studies and policies have separate keys. Values in a grid or in overrides would have no effect.
+/// Parameters for which studies and policies have separate keys. Values of these parameters in a grid or in
+/// overrides would have no effect.
 const RESERVED_PARAMETERS: [&str; 3] = ["run.seed", "run.total_days", "initial.initial_cash"];
 
 fn check_reserved_parameters<'a>(

@@ -205,7 +205,8 @@ fn read_and_verify_shard(file: &Path) -> Result<ShardState, String> {
         return Err("it is not a file".to_owned());
     }
     let mut reader = BufReader::new(File::open(file).map_err(|error| error.to_string())?);
-    // The first line of a shard is short, so the read is limited. A file without line terminators is not a shard.
+    // The first line of a shard is short. The read is limited, so that a file without line terminators is not
+    // read completely.
     let mut line = Vec::new();
     reader.by_ref().take(4096).read_until(b'\n', &mut line).map_err(|error| error.to_string())?;
     let head = std::str::from_utf8(&line).ok().and_then(|line| ShardHeader::parse(line.trim_end()));

@@ -19,7 +19,8 @@ use novamind_session::ReputationCause;
 use novamind_tools::Rejection;
 
 impl Interpreter {
-    /// Executes `break`, `break CONDITION` and `break clear N|all`. `column` is the column at which `rest` begins.
+    /// Executes `break`, `break CONDITION` and `break clear N|all`. `column` is the column at which `rest`
+    /// begins in the line.
     pub(super) fn breakpoint_command(
         &mut self,
         rest: &str,

@@ -119,7 +119,7 @@ mod tests {
         }
     }
 
-    /// Returns the labels of a dashboard: words before a colon, headings and column heads, except plans.
+    /// Returns the labels of a dashboard: words before a colon, headings and column heads. Omits plans.
     fn dashboard_labels(dashboard: &str) -> Vec<String> {
         let mut found = Vec::new();
         for line in dashboard.lines() {

@@ -108,8 +108,8 @@ fn select_groups<'a>(
     Err(argument_error(arguments, &format!("{id} is not a known group; {known}")))
 }
 
-/// Returns the result of a tool with ranges and dates instead of single estimates, and with the true means of R&D
-/// projects. Returns `None` if the result contains neither estimates nor R&D projects.
+/// Returns the result of a tool with ranges and dates instead of point estimates, and with the true means of
+/// R&D projects. Returns `None` if the result contains neither estimates nor R&D projects.
 pub(super) fn answer_with_ranges(session: &Session, answer: &novamind_tools::Answer) -> Option<Value> {
     match answer {
         novamind_tools::Answer::GetGroupInsights(insights) => {

@@ -27,8 +27,8 @@ const LEADS_HELP: &str = "\
 leads                     show leads by group in the last week and the last four weeks, paid and by word of mouth, with
                           conversions
 leads GROUP               show one group, for example leads S1
-The costs per lead and per first bill in the last four weeks follow, by channel and group, with the
-cheapest earlier four weeks for comparison.";
+The costs per lead and per first bill in the last four weeks follow, by channel and group, compared with the four
+consecutive earlier weeks in which leads were cheapest.";
 
 const CURVE_HELP: &str = "\
 curve GROUP               show the quality that 10, 50 and 90 % of the leads of a group require at a price, the
@@ -87,7 +87,7 @@ fn command_help(name: &str, led: bool) -> Option<String> {
     Some(text.to_owned())
 }
 
-/// Command and help line that are only for participants of a study.
+/// A command that only participants of a study have, with its help line.
 const WITHDRAW: (&str, &str) =
     ("withdraw", "withdraw                 erase everything you did in this study, after a confirmation");
 /// Commands that are rejected in runs of participants of a study.

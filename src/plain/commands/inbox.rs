@@ -1,4 +1,5 @@
-//! `inbox`: lists the waiting threads, first totals by group, then the most urgent threads.
+//! `inbox`: shows the totals of the waiting threads by group, then lists the threads with the earliest
+//! deadlines.
 
 use std::collections::BTreeMap;
 

@@ -53,7 +53,7 @@ impl Interpreter {
         if self.session.lesson().is_none() {
             return Ok(CommandResponse::rejected("guess", not_a_lesson_rejection()));
         }
-        // If the step has no question, the session rejects any answer.
+        // If the step has no question, the session rejects every answer.
         let question = LessonStatus::from_session(&mut self.session).and_then(|page| page.question);
         let value = question.map_or(Ok(f64::NAN), |question| parse_guess(&question, &written));
         let value = value.map_err(|text| argument_error(arguments, &text))?;

@@ -12,7 +12,7 @@ use novamind_rules::{OfferLineEconomics, OfferTotals, ThreadContext};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tools::{Answer, DealResult, ToolId};
 
-/// An offer to one enterprise before it is sent.
+/// An offer to one enterprise that is not sent yet.
 struct PlannedOffer {
     customer: u32,
     seats: u32,
@@ -21,7 +21,8 @@ struct PlannedOffer {
     request: Option<String>,
 }
 
-/// The offers of a call before it is executed. After the call, the threads no longer wait for the player.
+/// The offers of a call, read before the call is executed, because afterwards the threads no longer wait for
+/// the player.
 #[derive(Default)]
 pub(super) struct PlannedOffers(Vec<PlannedOffer>);
 
@@ -61,7 +62,7 @@ impl Interpreter {
         PlannedOffers(deals.iter().filter_map(offer).collect())
     }
 
-    /// Returns group and seats of subscribed enterprises whose threads do not wait for the player.
+    /// Returns the group and the seats of subscribed enterprises whose threads do not wait for the player.
     fn groups_and_seats(&mut self, customers: &[u32]) -> BTreeMap<u32, (&'static str, u32)> {
         if customers.is_empty() {
             return BTreeMap::new();
@@ -69,7 +70,8 @@ impl Interpreter {
         let list = customers.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
         let mut rows =
             |sql: String| self.session.query_unrecorded(&sql).map(|found| found.rows).unwrap_or_default();
-        // Queries that name the table of customers have no column of seats.
+        // Seats are queried separately, because queries that name the table of customers have no column of
+        // seats.
         let seats =
             rows(format!("SELECT customer_id, seat_count FROM subscriptions WHERE customer_id IN ({list})"));
         let groups =
@@ -104,7 +106,7 @@ impl Interpreter {
 }
 
 impl PlannedOffers {
-    /// Returns the offers that an answer confirms as sent.
+    /// Returns the offers that were sent, according to an answer.
     pub(super) fn sent_in(self, answer: &Answer) -> PlannedOffers {
         let Answer::SendEnterpriseDeal(answer) = answer else { return PlannedOffers::default() };
         let sent: BTreeSet<u32> = answer.results.iter().filter_map(DealResult::sent_customer).collect();

@@ -52,7 +52,8 @@ impl Interpreter {
     ) -> ParseError {
         let args = arguments_to_object(arguments, None).ok().filter(|_| !arguments.is_empty());
         if let Some(args) = args.filter(|_| novamind_tools::find(word).is_none()) {
-            // Ignore the rejection, because the response of plain mode also suggests similar commands.
+            // The rejection is ignored, because plain mode prints its own response, which also suggests
+            // similar commands.
             let _ = self.session.call(word, &args, Via::Plain);
         }
         unknown_command(word, column)

@@ -14,10 +14,10 @@ use novamind_rules::{LostThread, MIN_TURNS_PARAMETER, Subscription, ThreadContex
 use novamind_session::identifiers::Plan;
 use novamind_tools::Rejection;
 
-/// Beginning of a query that selects the turns of a thread.
+/// First part of a query that selects the turns of a thread.
 const TURNS_SQL: &str = "SELECT thread_id, customer_id, thread_type, turn_number, sender, message_text, offer_json, day, \
                      seat_count, close_reason FROM enterprise_turns";
-/// Beginning of a query that selects the profile of an enterprise.
+/// First part of a query that selects the profile of an enterprise.
 const ENTERPRISE_SQL: &str = "SELECT c.group_id, c.persona_industry, c.company_size_descriptor, c.company_culture, \
                        c.company_decision_style, c.company_primary_concern, s.status, s.plan, s.effective_price, \
                        s.end_day \
@@ -70,7 +70,8 @@ impl Interpreter {
         });
         let names = self.session.company().company_names();
         let kind = text_at(first, 2).replace('_', " ");
-        // Rows of the player's turns always contain one seat, so the number of seats is read from the enterprise's turns.
+        // In the rows of the player's turns, the number of seats is always 1, so it is read from the
+        // enterprise's turns.
         let customer_rows = turns.rows.iter().filter(|row| text_at(row, 4) != "agent");
         let seats = waiting.as_ref().map_or_else(
             || customer_rows.map(|row| number_at(row, 8) as u32).max().unwrap_or(1),
@@ -83,7 +84,7 @@ impl Interpreter {
         )];
         lines.extend(company.as_ref().and_then(describe_enterprise));
         lines.extend(turns.rows.iter().filter_map(|row| Some(names.insert_names(&describe_turn(row)?))));
-        // The texts of the tools, which agents read, do not state the number of turns.
+        // Agents do not know the number of turns, because the texts of the tools do not state it.
         let is_shown = self.session.manifest().mode != Mode::Baseline || self.session.ended().is_some();
         let min_turns =
             self.session.numbers().value(MIN_TURNS_PARAMETER).filter(|_| is_shown).map(|turns| turns as u32);

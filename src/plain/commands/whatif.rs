@@ -27,7 +27,7 @@ const DEFAULT_FUTURES: u32 = 20;
 const MAX_FUTURES: u32 = 200;
 /// Maximum size in bytes of a file that contains a what-if question.
 const MAX_FILE_BYTES: u64 = 64 << 10;
-/// Example command that error messages append.
+/// Example command, which is appended to error messages.
 const USAGE: &str = "for example: whatif from 2: set_prices * 0.9";
 
 /// A parsed what-if question.
@@ -194,7 +194,8 @@ impl Interpreter {
         })
     }
 
-    /// Continues in a branch in which the decisions of this run are replayed with edits.
+    /// Creates a branch in which the decisions of this run are replayed with edits, and continues in this
+    /// branch.
     fn branch_keeping_decisions(&mut self, week: u32, decided: &[DecisionEdit]) -> CommandResponse {
         let mode = self.session.manifest().mode.branch_mode();
         let stop = self.watch.enter_simulation();
@@ -282,8 +283,8 @@ fn decision_rows(decisions: &[RecordedDecision], days: u32) -> Vec<Vec<String>> 
     decisions.iter().map(row).collect()
 }
 
-/// Converts the text of a question file to a question. The first line contains the words before the colon. Each later
-/// line contains an alternative.
+/// Converts the text of a question file to a question in one line. The first line of the file contains the
+/// words before the colon, and each later line contains an alternative.
 fn convert_question_file(text: &str) -> String {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let first = lines.next().unwrap_or_default().trim_end_matches(':');

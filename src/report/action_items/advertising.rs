@@ -101,7 +101,7 @@ fn describe_lead_costs(spell: &AdWindow) -> String {
     }
 }
 
-/// Returns the advertising form without the budgets of a group in some channels.
+/// Returns the advertising form, filled so that the budgets of a group in some channels are removed.
 fn target_without_ads(
     situation: &DiagnosisContext<'_>,
     group: Group,

@@ -12,12 +12,12 @@ use novamind_tools::ToolId;
 /// Runway in weeks below which low cash is reported.
 const MIN_RUNWAY_WEEKS: f64 = 8.0;
 
-/// Minimum number of subscriptions of a plan whose margin is reported. Usage rates have a standard deviation of about
-/// 40 % of their mean, so the mean of ten has a standard error of about 13 %; the loss of fewer subscriptions can be the
-/// usage of one of them.
+/// Minimum number of subscriptions of a plan for reporting its margin. Usage rates have a standard deviation
+/// of about 40 % of their mean, so the mean of ten subscriptions has a standard error of about 13 %. With
+/// fewer subscriptions, the usage of a single one can cause the loss.
 const MIN_SUBSCRIPTIONS_FOR_MARGIN: u32 = 10;
-/// Assumed largest ratio of the cancellations on the last day to a mean day of the week. Usage of the last day includes
-/// customers who cancelled on that day, and revenue does not.
+/// Assumed largest ratio of the cancellations on the last day to the mean daily cancellations of the week.
+/// Usage of the last day includes customers who cancelled on that day, but revenue does not.
 const MAX_LAST_DAY_RATIO: f64 = 3.0;
 
 /// Reports a problem if cash is expected to last less than eight weeks.
@@ -55,9 +55,9 @@ pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<Action
 
 struct SpendingBudget {
     name: &'static str,
-    /// Current budget, dollars a day.
+    /// Current budget, dollars per day.
     dollars: f64,
-    /// Reduced budget with which cash lasts eight weeks, dollars a day.
+    /// Reduced budget at which cash lasts eight weeks, dollars per day.
     reduced_dollars: f64,
     /// Form of the budget, filled with the reduced amount.
     target: ActionTarget,
@@ -111,7 +111,7 @@ fn largest_budget(situation: &DiagnosisContext<'_>) -> SpendingBudget {
     let largest = budgets.into_iter().max_by(|left, right| left.1.total_cmp(&right.1));
     let (name, dollars, place) =
         largest.filter(|budget| budget.1 > 0.0).unwrap_or(("", 0.0, ActionTarget::Ledger));
-    // Uses the sum of the amounts in the form, because each amount is rounded down.
+    // The reduced budget is the sum of the amounts in the form, because each amount is rounded down.
     let kept = if let ActionTarget::Call(_, arguments) = &place { sum_numbers(arguments) } else { 0.0 };
     SpendingBudget { name, dollars, reduced_dollars: kept, target: place }
 }
@@ -123,8 +123,9 @@ fn sum_numbers(arguments: &Value) -> f64 {
     }
 }
 
-/// Finds plans whose subscribers cost more in compute than they pay: revenue of the subscriptions that could use the product
-/// on the last day, and compute of the last day's usage times 30. Every reported plan has a negative gross margin.
+/// Finds plans whose subscribers cost more in compute than they pay. Compares the revenue of the
+/// subscriptions that could use the product on the last day with the compute cost of the last day's usage,
+/// multiplied by 30. Every reported plan has a negative gross margin.
 pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let Some(groups) = situation.last_group_week() else { return Vec::new() };
     let revenue_by_plan = situation.session.company().plan_revenue();
@@ -161,8 +162,9 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
     Plan::ALL.into_iter().filter_map(of_plan).collect()
 }
 
-/// Proposes the best model tier whose compute the plan's revenue covers at the same usage, otherwise a quota at which
-/// compute cannot exceed the revenue. Returns `None` if the current quota already limits compute to the revenue.
+/// Proposes the best model tier whose compute cost is covered by the plan's revenue at the same usage. If
+/// there is none, proposes a quota at which the compute cost cannot exceed the revenue. Returns `None` if the
+/// current quota already limits the compute cost to the revenue.
 fn propose_cheaper_setting(
     situation: &DiagnosisContext<'_>,
     plan: Plan,

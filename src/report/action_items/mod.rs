@@ -1,8 +1,8 @@
 //! Problems of the company that need action, diagnosed from visible data and ranked by the money at risk.
 //!
-//! Every action item states the object, the problem and the amount. The item links to a form with proposed arguments,
-//! a thread, a group or the ledger. Amounts are proposed if they follow from a formula that the tools document. Baseline
-//! runs receive no proposals.
+//! Every action item states the object, the problem and the amount. The item links to a form with proposed
+//! arguments, a thread, a group or the ledger. An amount is proposed if it follows from a formula in the
+//! documentation of the tools. There are no proposals in baseline runs.
 
 mod advertising;
 mod cash;
@@ -34,7 +34,7 @@ pub enum Problem {
     Threads,
     /// No plan has a price.
     NoPrice,
-    /// Plans with a price have a quota of 0.
+    /// Plans that have a price have a quota of 0.
     NoQuota,
     /// No channel brings leads.
     NoLeads,
@@ -83,7 +83,7 @@ impl Problem {
     }
 }
 
-/// The object that a problem links to, where the player can solve it.
+/// The object where the player can solve a problem.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ActionTarget {
     /// The form of a tool, filled with these arguments.
@@ -116,7 +116,7 @@ pub struct ActionItem {
 struct DiagnosisContext<'a> {
     observation: Observation,
     settings: CoreSettings,
-    /// Total advertising budget, dollars a day.
+    /// Total advertising budget, dollars per day.
     daily_ad_spend: f64,
     ads_by_group: ByGroup<f64>,
     weeks: &'a [WeekFigures],
@@ -133,8 +133,9 @@ const RISK_DAYS: f64 = 28.0;
 /// Minimum money at risk for a report, as a share of revenue plus costs.
 const MIN_RISK_SHARE: f64 = 0.01;
 const DAYS_PER_MONTH: f64 = 30.0;
-/// Number of standard errors by which a figure of a week differs by chance. A normal error exceeds three standard errors
-/// in one direction once in 740 weeks, so a company with ten groups has a false report about once in 74 weeks.
+/// Largest deviation of a weekly figure that is attributed to chance, in standard errors. A normally
+/// distributed error exceeds three standard errors in one direction once in 740 weeks, so a company with ten
+/// groups has a false report about once in 74 weeks.
 const MAX_CHANCE: f64 = 3.0;
 
 impl<'a> DiagnosisContext<'a> {
@@ -216,7 +217,7 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     // thread ends, and the loss of a plan grows with its sales.
     let is_always_reported = |problem: Problem| matches!(problem, Problem::Threads | Problem::Margin);
     found.retain(|need| is_always_reported(need.problem) || need.at_risk >= MIN_RISK_SHARE * moved);
-    // Excludes problems that link to a tool that the lesson has locked.
+    // Problems that link to a tool that the lesson has locked are not reported.
     let is_locked =
         |tool: ToolId| session.lesson().is_some_and(|lesson_progress| !lesson_progress.has_tool(tool));
     found.retain(|need| !matches!(need.target, ActionTarget::Call(tool, _) if is_locked(tool)));
@@ -247,7 +248,7 @@ impl ActionItem {
     }
 }
 
-/// Rounds an amount up to two digits, for proposals of round figures.
+/// Rounds an amount up to two significant digits, so that proposals contain round figures.
 fn round_up_to_two_digits(value: f64) -> f64 {
     if value <= 0.0 {
         return 0.0;

@@ -41,8 +41,8 @@ impl<'a> OfferChange<'a> {
         format!("On day {} you changed {}{more}.", self.day, words.join(", "))
     }
 
-    /// Returns the form of the first changed setting that has a value for each plan, filled with the earlier values.
-    /// Returns the page of the group if the settings have the earlier values again.
+    /// Returns the form that contains the first changed setting, filled with the earlier values of the plans.
+    /// Returns the page of the group if the settings already have the earlier values again.
     pub(super) fn restore_target(&self, situation: &DiagnosisContext<'_>, group: Group) -> ActionTarget {
         let Some(first) = self.changes.first() else { return ActionTarget::Group(group) };
         let tool = first.setting.tool();

@@ -1,5 +1,5 @@
-//! Properties of the action items of generated companies: the amounts and times of an item follow from the numbers that
-//! the item itself shows, agree with the figures of other screens, and the proposed call is accepted.
+//! Properties of the action items of generated companies. The amounts and times of an item follow from the
+//! numbers in its text and agree with the figures on other screens, and the proposed call is accepted.
 
 use std::collections::BTreeMap;
 
@@ -100,7 +100,7 @@ fn numbers(text: &str) -> Vec<f64> {
             rest = &rest[word.len()..];
             before = '0';
         } else {
-            // All digits of an identifier belong to it.
+            // All following digits belong to the identifier.
             before = if sign.is_ascii_digit() { 'x' } else { sign };
             rest = &rest[sign.len_utf8()..];
         }
@@ -113,7 +113,8 @@ fn numbers_excludes_identifiers() {
     assert_eq!(numbers("D_S05: $1,234.50 of 7 (12.5%) on A. 3 weeks, 9."), [1234.5, 7.0, 12.5, 3.0, 9.0]);
 }
 
-/// Asserts that a number equals its formula up to half a unit of its last digit and to the rounding of its inputs.
+/// Asserts that a displayed number differs from the computed number by at most `tolerance`, which allows for
+/// rounding.
 #[track_caller]
 fn assert_near(shown: f64, computed: f64, tolerance: f64, need: &ActionItem) {
     assert!((shown - computed).abs() <= tolerance + 1e-6, "{shown} {computed}: {need:#?}");
@@ -161,12 +162,12 @@ fn check_item(need: &ActionItem, session: &mut Session) {
             let [spend, total] = proposed[..] else { panic!("{need:#?}") };
             assert_eq!(total, spend * 7.0 * Channel::ALL.len() as f64, "{need:#?}");
         }
-        // The runway has its own tests in this crate and in the session.
+        // Other tests in this crate and in the crate `session` check the runway.
         Problem::Runway | Problem::NoPrice | Problem::NoRequests(_) => {}
     }
 }
 
-/// Compute exceeds revenue, the Product screen also shows a negative margin, and the proposal covers the compute.
+/// Checks that the compute cost exceeds the revenue and that the Product screen also shows a negative margin.
 fn check_margin(need: &ActionItem, said: &[f64], proposed: &[f64], session: &mut Session) {
     let [_, revenue, compute] = said[..] else { panic!("{need:#?}") };
     assert!(compute > revenue, "{need:#?}");
@@ -185,7 +186,8 @@ fn check_margin(need: &ActionItem, said: &[f64], proposed: &[f64], session: &mut
     }
 }
 
-/// The shares and the difference follow from the counts, which are those of Fit.
+/// Checks that the shares and the difference follow from the counts, and that the counts equal those of
+/// [`fits`].
 fn check_conversion_fall(need: &ActionItem, said: &[f64], group: Group, session: &Session) {
     let [signed, leads, share, _, usual_signed, usual_leads, usual, fewer] = said[..8] else {
         panic!("{need:#?}")
@@ -226,7 +228,7 @@ fn check_no_sales(need: &ActionItem, said: &[f64], proposed: &[f64], group: Grou
     }
 }
 
-/// The tier is full after the stated time at the stated growth.
+/// Checks that the tier is full after the stated time at the stated growth.
 fn check_capacity(need: &ActionItem, said: &[f64], proposed: &[f64]) {
     let [busiest, share, units, tier, growth, time] = said[..] else { panic!("{need:#?}") };
     assert_near(share, 100.0 * busiest / units, 0.5, need);
@@ -248,14 +250,14 @@ fn check_overload(need: &ActionItem, said: &[f64], proposed: &[f64]) {
     }
 }
 
-/// The backlog is cleared after the stated number of days.
+/// Checks that the backlog is cleared after the stated number of days.
 fn check_backlog(need: &ActionItem, said: &[f64], proposed: &[f64]) {
     let ([waiting, ..], [_, solved, inflow, days]) = (said, proposed) else { panic!("{need:#?}") };
     assert!(solved > inflow, "{need:#?}");
     assert_eq!((waiting / (solved - inflow)).ceil(), *days, "{need:#?}");
 }
 
-/// The cost of a lead is at least twice the earlier cost.
+/// Checks that the cost of a lead is at least twice the earlier cost.
 fn check_lead_cost(need: &ActionItem) {
     let Some((recent, earlier)) = need.text.split_once(". In weeks ") else { panic!("{need:#?}") };
     let cost = |text: &str| Some(numbers(text.split_once('$')?.1)[0]);
@@ -264,7 +266,8 @@ fn check_lead_cost(need: &ActionItem) {
     }
 }
 
-/// Plays generated companies and checks every item of every week. Returns how often each problem was reported.
+/// Plays generated companies and checks every item in every week. Returns the number of reports of each
+/// problem.
 fn check_companies(count: usize) -> BTreeMap<&'static str, usize> {
     let mut runner = TestRunner::deterministic();
     let mut reported = BTreeMap::new();
@@ -298,7 +301,7 @@ fn check_companies(count: usize) -> BTreeMap<&'static str, usize> {
     reported
 }
 
-/// Checks six companies, or as many as `PROPTEST_CASES` says.
+/// Checks six companies, or the number in the environment variable `PROPTEST_CASES`.
 #[test]
 fn items_of_generated_companies_agree_with_their_own_numbers() {
     let cases = std::env::var("PROPTEST_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(6);

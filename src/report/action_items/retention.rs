@@ -6,16 +6,16 @@ use crate::formatting::{format_money, format_whole, pluralize};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tools::ToolId;
 
-/// Minimum number of weekly cancellations that count as a churn wave.
+/// Minimum number of cancellations in a week that counts as a churn wave.
 const MIN_WAVE_CANCELLATIONS: f64 = 20.0;
-/// Number of weeks before the first bills of customers who signed up in the first week.
+/// Number of weeks after which all customers who signed up in the first week have been billed.
 const BILLING_CYCLE_WEEKS: usize = 5;
-/// Number of earlier weeks with which a week is compared.
+/// Number of earlier weeks to compare a week with.
 const COMPARED_WEEKS: usize = 4;
 /// Minimum number of earlier weeks for a comparison.
 const MIN_COMPARED_WEEKS: usize = 2;
-/// Minimum ratio of the cancellations of a churn wave to the usual cancellations. The number of bills is an estimate, and a
-/// healthy company in its tenth week has 1.9 times the usual cancellations.
+/// Minimum ratio of the cancellations of a churn wave to the usual cancellations. The number of bills is only
+/// an estimate: a healthy company in its tenth week has 1.9 times the usual cancellations.
 const MIN_CHURN_WAVE_RATIO: f64 = 2.0;
 /// Number of days in which every subscriber is billed once. Subscribers make their decisions on billing days.
 const BILLING_DAYS: u32 = 30;
@@ -95,7 +95,8 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
         return None;
     }
     let mean_price = weeks[last][group].revenue.0.iter().sum::<f64>() / subscribers(last).max(1.0);
-    // Older decisions cannot explain the cancellations, because all subscribers were billed after them before last week.
+    // Older decisions cannot explain the cancellations: between those decisions and last week, all
+    // subscribers were billed.
     let since = situation.observation.day.saturating_sub(BILLING_DAYS + 7);
     let change = OfferChange::find_last(situation, &SETTINGS_JUDGED_AT_BILLING, since);
     let change_text = change.as_ref().map_or(String::new(), |change| format!(" {}", change.describe()));
@@ -114,14 +115,14 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     })
 }
 
-/// Returns about how many subscribers are billed for another month in a week: those who signed up one or more billing
-/// periods earlier. Earlier cancellations are not subtracted.
+/// Returns the approximate number of subscribers who are billed for another month in a week: those who signed
+/// up one or more billing periods earlier. Earlier cancellations are not subtracted.
 fn expected_bills(week: usize, signups: &dyn Fn(usize) -> f64) -> f64 {
     let weeks_per_period = f64::from(BILLING_DAYS) / 7.0;
     let mut bills = 0.0;
     let mut back = weeks_per_period;
     while back <= week as f64 {
-        // A week that begins back weeks earlier overlaps two recorded weeks.
+        // A week that begins `back` weeks earlier overlaps two recorded weeks.
         let (whole, part) = (back.floor() as usize, back.fract());
         bills += (1.0 - part) * signups(week - whole);
         if let Some(earlier) = week.checked_sub(whole + 1) {
@@ -132,8 +133,9 @@ fn expected_bills(week: usize, signups: &dyn Fn(usize) -> f64) -> f64 {
     bills
 }
 
-/// Returns the number by which a count exceeds its expectation by chance, if the expectation was estimated from a rate:
-/// [`MAX_CHANCE`] standard errors of a Poisson count with the given exposures.
+/// Returns the largest excess of a count over its expectation that is attributed to chance, if the
+/// expectation was estimated from a rate: [`MAX_CHANCE`] standard errors of a Poisson count with the given
+/// exposures.
 fn chance_of_count(expected: f64, exposure: f64, exposure_before: f64) -> f64 {
     MAX_CHANCE * (expected * (1.0 + exposure / exposure_before.max(1.0))).sqrt()
 }

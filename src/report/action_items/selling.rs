@@ -15,11 +15,11 @@ use novamind_tools::ToolId;
 const MIN_WEEKLY_LEADS: u32 = 20;
 /// Conversion below which a group counts as a group without sales.
 pub(super) const MIN_CONVERSION: f64 = 0.1;
-/// Minimum share of the estimated usage that a sufficient quota covers.
+/// Share of the estimated usage that a quota must cover to be sufficient.
 const MIN_QUOTA_COVERAGE: f64 = 0.8;
-/// Age at which an estimate counts as outdated, days.
+/// Age above which an estimate counts as outdated, days.
 const OUTDATED_STUDY_DAYS: u32 = 28;
-/// Proposed budget to test a channel, dollars a day.
+/// Proposed budget to test a channel, dollars per day.
 const TRIAL_AD_SPEND: f64 = 50.0;
 
 /// Reports a problem if no plan has a price, or if plans with a price have a quota of 0.
@@ -75,8 +75,8 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         .enumerate()
         .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
         .collect();
-    // The form contains half of the estimate that the sentence shows. The middle of the displayed range differs from
-    // the estimate.
+    // The form contains half of the estimate in the sentence. The sentence states the estimate, because it
+    // differs from the middle of the displayed range.
     let texts: Vec<String> = budgets
         .iter()
         .map(|estimates| {
@@ -89,7 +89,7 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         problem: Problem::NoPrice,
         text: "No plan has a price. No one can subscribe.".to_owned(),
         proposal: Some(format!(
-            "Mean budgets a month: {}. The form proposes half of each estimate.",
+            "Mean monthly budgets: {}. The form proposes half of each estimate.",
             texts.join(", ")
         )),
         target: ActionTarget::Call(ToolId::SetPrices, Value::Object(prices)),
@@ -106,8 +106,8 @@ pub(super) fn missing_leads(situation: &DiagnosisContext<'_>) -> Option<ActionIt
     if situation.daily_ad_spend > 0.0 || lead_count > 0 || !silent {
         return None;
     }
-    // Selects the group with the smallest quality deficit on the current plans, then on the best model tier, then with
-    // the highest budget.
+    // Selects the group with the smallest quality deficit on the current plans. Ties are broken by the
+    // deficit on the best model tier, then by the highest budget.
     let group = situation.individuals().min_by(|left, right| {
         let now = |estimates: &Estimates| {
             (estimates.required_quality - best_delivered_quality(situation, estimates.group)).max(0.0)
@@ -159,7 +159,8 @@ pub(super) enum OfferDeficit {
     Price,
     Quota,
     Quality,
-    /// Price, quota and quality each meet the estimates, but customers require higher quality at this price.
+    /// Price, quota and quality each meet the estimates, but customers require a higher quality at this
+    /// price.
     Balance,
 }
 
@@ -262,10 +263,11 @@ impl<'a> GroupOffers<'a> {
         })
     }
 
-    /// Describes the quality of the best plan. Also names a plan with higher quality if its quota does not cover the usage.
+    /// Describes the quality of the best plan. Also names a plan with higher quality whose quota does not
+    /// cover the usage, if there is one.
     fn describe_best_plan(&self, plan: Plan, delivered: f64) -> String {
         let quality = |plan: Plan| self.quality.by_plan[plan];
-        // Screens show the range of the budget, but plans are compared by the point estimate.
+        // Screens show the range of the budget, but plans are compared with the point estimate.
         let scope = match self.estimates.group.is_enterprise() {
             true => String::new(),
             false => {
@@ -407,7 +409,8 @@ impl<'a> GroupOffers<'a> {
                 )?;
                 Some((text, proposal, place))
             }
-            // Last week's leads did not see an offer that changed today, so their decisions do not apply to this offer.
+            // Last week's leads did not see an offer that changed today, so their decisions say nothing about
+            // this offer.
             OfferDeficit::Balance if self.was_changed_today() => None,
             OfferDeficit::Balance => {
                 let plan = self.best_plan()?;
@@ -427,7 +430,8 @@ impl<'a> GroupOffers<'a> {
     }
 }
 
-/// Proposes the lowest model tier above the current tier that delivers sufficient quality and whose compute the price covers.
+/// Proposes the lowest model tier above the current tier that delivers sufficient quality at a compute cost
+/// that the price covers.
 fn propose_better_model(
     situation: &DiagnosisContext<'_>,
     group: Group,
@@ -438,8 +442,8 @@ fn propose_better_model(
     let models = &situation.terms.models;
     let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     let product = delivered / now.multiplier;
-    // Does not propose a model tier whose compute costs more than the plan earns. Enterprises are excluded because
-    // they negotiate their price.
+    // A model tier whose compute costs more than the plan earns is not proposed. This limit does not apply to
+    // enterprises, because they negotiate their price.
     let used = situation.group_estimates(group)?.account_usage().min(situation.settings.quotas[plan].units())
         * DAYS_PER_MONTH;
     let pays = |unit_cost: f64| group.is_enterprise() || used * unit_cost <= situation.settings.prices[plan];
@@ -471,7 +475,8 @@ fn propose_better_quality(
     }
     let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     const PROPOSED_DEVELOPMENT_SPEND: f64 = 5_000.0;
-    // Proposes nothing if the group already receives this budget, because the quality then rises without a change.
+    // Nothing is proposed if the group already receives this budget, because the quality will rise without a
+    // change.
     let mut spend = situation.session.settings().targeted_development.targeted_spend.clone();
     if spend.get(&group).is_some_and(|spend| *spend >= PROPOSED_DEVELOPMENT_SPEND) {
         return None;

@@ -12,14 +12,14 @@ use novamind_tools::ToolId;
 
 /// Number of coming weeks for which capacity must be sufficient.
 const CAPACITY_HORIZON_WEEKS: f64 = 2.0;
-/// Share of days with an outage above which outages are reported.
+/// Outages are reported if the share of days with an outage exceeds this value.
 const MAX_OUTAGE_SHARE: f64 = 0.01;
-/// Share of subscribers waiting for support above which a backlog is reported.
+/// A backlog is reported if the share of subscribers waiting for support exceeds this value.
 const MAX_BACKLOG_SHARE: f64 = 0.02;
-/// Number of days in which the proposed operations clear the backlog.
+/// Number of days in which the proposed operations budget clears the backlog.
 const BACKLOG_CLEARANCE_DAYS: f64 = 7.0;
 
-/// Reports a problem if usage exceeds capacity or will soon exceed capacity.
+/// Reports a problem if usage exceeds capacity or will soon do so.
 pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let week = situation.last_week()?;
     let tiers = &situation.terms.capacities;
@@ -32,7 +32,7 @@ pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<Acti
     if situation.observation.changes.iter().any(|change| change.setting == SettingId::CapacityTier) {
         return None;
     }
-    // The time is computed from the growth that the sentence shows.
+    // The time is computed from the rounded growth that the sentence shows.
     let growth = (PeakProjection::from_weeks(situation.weeks)?.growth * 1_000.0).round() / 1_000.0;
     if growth <= 1.0 {
         return None;
@@ -117,12 +117,12 @@ pub(super) fn diagnose_outages(situation: &DiagnosisContext<'_>) -> Option<Actio
     if now < MAX_OUTAGE_SHARE {
         return None;
     }
-    // Selects the smallest round amount that halves the frequency of outages.
+    // The smallest round amount that halves the frequency of outages.
     let more = (1..=200)
         .map(|step| operations + 50.0 * f64::from(step))
         .find(|dollars| share(*dollars) <= now / 2.0)?;
     let at_risk = situation.upcoming_revenue() * (now * RISK_DAYS).min(1.0);
-    // Does not propose spending that exceeds the possible savings.
+    // Spending that exceeds the possible savings is not proposed.
     if (more - operations) * RISK_DAYS > at_risk {
         return None;
     }

@@ -1,4 +1,5 @@
-//! Tests companies with one problem each, which must be the first action item. A healthy company has no action items.
+//! Tests companies that have one problem each. The problem must be the first action item. A healthy company
+//! has no action items.
 
 use serde_json::{Value, json};
 
@@ -78,7 +79,7 @@ fn missing_prices_are_found() {
     let need = assert_first_problem(
         &play_company(3, 1e6, &[], 0),
         Problem::NoPrice,
-        &["No plan has a price", "Mean budgets a month: S1 $", "The form proposes half of each estimate"],
+        &["No plan has a price", "Mean monthly budgets: S1 $", "The form proposes half of each estimate"],
     );
     let ActionTarget::Call(ToolId::SetPrices, arguments) = &need.target else { panic!("{need:?}") };
     let proposal = need.proposal.as_deref().unwrap_or_default();

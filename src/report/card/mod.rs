@@ -1,5 +1,5 @@
-//! A card that summarizes a run for sharing, as text of 80 columns or as a picture. The card shows the cash curve, turning
-//! points, figures and the scenario.
+//! A shareable card that summarizes a run, as text that is 80 columns wide or as a picture. The card shows
+//! the cash curve, turning points, figures and the scenario.
 
 mod svg;
 mod text;
@@ -22,14 +22,14 @@ struct LabeledFigure {
 #[derive(Debug, Clone, PartialEq)]
 struct Card {
     headline: String,
-    /// Rank among the published results, if the run is comparable.
+    /// Rank among the published results; `None` if the run is not comparable.
     rank: Option<String>,
     cash_by_day: Vec<f64>,
     /// Days of the highest and the lowest cash.
     marks: Vec<u32>,
     turning_points: Vec<LabeledFigure>,
     numbers: [LabeledFigure; 3],
-    /// Remark about a language model that worded or judged posts.
+    /// Remark about a language model that worded or judged posts, if any.
     voice: Option<&'static str>,
     /// Scenario, seed and program version of the run.
     source: String,

@@ -1,4 +1,4 @@
-//! Cash curves of a class, and scatter plots of a figure by a decision.
+//! Cash curves of a class, and scatter plots of a figure against a decision.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,11 +29,11 @@ pub fn student_curves<'a>(
     good.into_iter().chain(students).collect()
 }
 
-/// A scatter plot of a figure by a decision.
+/// A scatter plot of a figure against a decision.
 pub struct Scatter<'a> {
-    /// Name of the decision whose mean over the decided weeks is on the horizontal axis.
+    /// Name of the decision on the horizontal axis, which shows its mean over the decided weeks.
     pub decision: String,
-    /// Name of the figure whose value in the last week is on the vertical axis.
+    /// Name of the figure on the vertical axis, which shows its value in the last week.
     pub figure: String,
     /// One point for each student.
     pub points: Vec<StudentPoints<'a>>,

@@ -12,7 +12,7 @@ pub struct ClassQuestion<'a> {
     pub question: &'a str,
     /// Possible answers; empty if the question asks for a number.
     pub choices: &'a [String],
-    /// Label, guess and outcome of every student with a guess and an outcome.
+    /// Label, guess and outcome of every student who has both a guess and an outcome.
     pub answers: Vec<(&'a str, f64, f64)>,
 }
 

@@ -1,5 +1,5 @@
-//! Results of a class as a self-contained HTML page for a projector, without scripts. The user highlights a student
-//! with radio buttons, by mouse or arrow keys.
+//! Results of a class as a self-contained HTML page for a projector, without scripts. Radio buttons, which
+//! the user selects by mouse or arrow keys, highlight a student.
 
 use std::fmt::Write;
 

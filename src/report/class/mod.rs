@@ -120,9 +120,8 @@ impl ClassView<'_> {
         self.lesson?.plan.parts.get((run.evidence.part as usize).checked_sub(1)?)
     }
 
-    /// Returns the ratio of a goal's value to its value in the reference play on the same seed. Steps and goals are
-    /// numbered from
-    /// 0.
+    /// Returns the ratio of a goal's value to its value in the reference play on the same seed. Steps and
+    /// goals are numbered from 0.
     fn goal_share(&self, run: &ClassRun, step: usize, goal: usize) -> Option<f64> {
         let value = |evidence: &Evidence| evidence.steps.get(step)?.goals.get(goal)?.value;
         let part = self.part_of_run(run)?;

@@ -10,13 +10,13 @@ pub struct RankedStudent<'a> {
     pub label: &'a str,
     /// Displayed name: the label, or the rank if labels are hidden.
     pub name: String,
-    /// Score relative to the reference play, or dollars without a lesson.
+    /// Score relative to the reference play, or cash in dollars if there is no lesson.
     pub score: f64,
-    /// The best finished run of each part of the lesson. Without a lesson, the student's only run.
+    /// The best finished run of each part of the lesson, or the student's only run if there is no lesson.
     pub runs: Vec<&'a ClassRun>,
 }
 
-/// Returns the students by score, highest score first. Omits students without a run that counts.
+/// Returns the students by score, highest score first. Omits students who have no run that counts.
 pub fn rank_students<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
     let day = common_day(view);
     let of_student = |label: &'a str| {

@@ -1,4 +1,5 @@
-//! Text for breakpoints: their conditions, the reason why a run stopped, and the day since which a condition has been true.
+//! Text for breakpoints: conditions, the reason why a run stopped, and the day on which a condition became
+//! true.
 
 use super::clean_up_numbers;
 use crate::formatting::pluralize;
@@ -99,7 +100,8 @@ pub fn describe_condition_history(condition_history: &ConditionHistory) -> Vec<S
     clean_up_numbers(lines)
 }
 
-/// Lists the days on which a condition became true. Marks days on which the condition's figure had its first value.
+/// Lists the days on which a condition became true. Marks the day on which the condition's figure had its
+/// first value.
 pub fn describe_condition_days(
     condition: &Condition,
     found: &[ConditionState],

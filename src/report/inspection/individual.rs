@@ -1,4 +1,4 @@
-//! Text for the inspection of an individual: decisions, and the terms that determine them.
+//! Text for the inspection of an individual: the individual's decisions, and the terms that determine them.
 
 use super::{clean_up_numbers, indented_table};
 use novamind_insight::{
@@ -10,7 +10,7 @@ use novamind_session::identifiers::Plan;
 /// Prefix of the line that lists satisfaction values.
 pub const SATISFACTION_PREFIX: &str = "satisfaction:";
 
-/// Number of days between two listed satisfaction values.
+/// Number of days between successive satisfaction values in the list.
 const SATISFACTION_STEP_DAYS: usize = 7;
 
 /// Describes an individual: headline, participation curve, plans today and at the last bill, satisfaction and events.

@@ -3,7 +3,7 @@
 use super::clean_up_numbers;
 use novamind_insight::{LeadEquation, LeadFactor};
 
-/// Returns the index of the line that [`describe_lead_equation`] writes for a factor.
+/// Returns the index of the line for a factor in the result of [`describe_lead_equation`].
 pub fn factor_line_index(factor: LeadFactor) -> usize {
     2 + factor as usize
 }

@@ -2,7 +2,7 @@
 
 use novamind_base::formatting::grouped_number;
 
-/// Minimum number of digits before the decimal point with which a number is written in powers of ten.
+/// Number of digits before the decimal point from which a number is written in powers of ten.
 const MIN_SCIENTIFIC_DIGITS: usize = 16;
 
 /// Normalizes the numbers in lines of text.

@@ -5,7 +5,8 @@ use novamind_insight::{CancellationEffect, ChangeThresholds, ReputationEquation,
 use novamind_session::SpilloverEffect;
 use novamind_session::identifiers::Group;
 
-/// Describes how the reputation of a group changed on a day: value before, every applied term, value after, and dropped terms.
+/// Describes how the reputation of a group changed on a day: its value before, every applied term, its value
+/// after, and dropped terms.
 pub fn describe_reputation(reputation_equation: &ReputationEquation) -> Vec<String> {
     let ReputationEquation { group, day, before, after, thresholds: least, .. } = reputation_equation;
     let plain = |name: &str, value: f64| vec![name.to_owned(), format!("{value:.8}")];
@@ -18,7 +19,7 @@ pub fn describe_reputation(reputation_equation: &ReputationEquation) -> Vec<Stri
     ));
     let counted = reputation_equation.spillovers.iter().filter(|spill| spill.counts);
     rows.extend(counted.map(|spill| term_row(&spillover_product(spill), spill.change)));
-    // Ignores rounding errors, which are not the effect of a limit.
+    // A smaller difference is a rounding error and not the effect of a limit.
     if reputation_equation.bounds.abs() > 1e-12 {
         rows.push(term_row("limits", reputation_equation.bounds));
     }

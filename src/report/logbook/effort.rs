@@ -10,7 +10,7 @@ use novamind_session::TimeSpent;
 /// Counts and durations of a player's actions between two simulated weeks.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct PlayerEffort {
-    /// Time by class: active, idle, away.
+    /// Time by class, such as active, idle and away.
     #[serde(flatten)]
     pub time: TimeSpent,
     /// Number of breaks: gaps of more than ten minutes in play.

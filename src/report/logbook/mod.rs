@@ -28,7 +28,7 @@ use novamind_session::{
 };
 use timeline::{Timeline, WeekSpan};
 
-/// Log of a run and of the player's actions in it.
+/// Log of a run, with the player's actions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Logbook {
     /// ID of the run.
@@ -53,7 +53,7 @@ pub struct Logbook {
     pub start_cash: f64,
     /// Format version of the trajectory.
     pub format: u32,
-    /// Stamp of the study to which the run belongs; `None` without a study.
+    /// Stamp of the study to which the run belongs; `None` if the run belongs to no study.
     pub study: Option<StudyStamp>,
     /// Version of the program that recorded the run.
     pub version: String,
@@ -67,7 +67,7 @@ pub struct Logbook {
     pub earlier_runs: u32,
     /// ID of the parent run, if the run is a branch.
     pub parent: Option<String>,
-    /// Name of the policy that decided all weeks; `None` if at least one week was not decided by this policy.
+    /// Name of the policy that decided all weeks; `None` if no single policy decided all weeks.
     pub policy: Option<String>,
     /// Time at which the run was created, RFC 3339.
     pub created: String,
@@ -91,7 +91,7 @@ pub struct Logbook {
     pub breaks: Vec<PlayBreak>,
     /// Number of times that the system clock was set back during the run.
     pub clock_set_back: u32,
-    /// Number of times that the run was opened, counted from its lines.
+    /// Number of times that the run was opened, as counted in its lines.
     pub sittings: SessionCount,
     /// Summary of the player's notes.
     pub notes: NotesSummary,
@@ -99,9 +99,9 @@ pub struct Logbook {
     pub fast_weeks: u32,
     /// Sums of all counts and durations over the whole run.
     pub total: PlayerEffort,
-    /// Median time to decide a week, in seconds without breaks; `None` before the first week.
+    /// Median active time before a week, seconds; `None` before the first week.
     pub median_week_seconds: Option<f64>,
-    /// Time from the end of the run to the last line that was recorded after the end; `None` before the end.
+    /// Time from the end of the run to the last line that was recorded after it; `None` before the end.
     pub after_end: Option<TimeSpent>,
     /// Word counts of all rationales.
     pub wording: WordCounts,
@@ -126,7 +126,7 @@ pub struct NotesSummary {
     pub wording: Option<WordCounts>,
 }
 
-/// A simulated week, or days that were simulated one by one, with the preceding actions.
+/// A simulated week, or days that were simulated one by one, with the actions before them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WeekRecord {
     /// Number of the week, from 1.

@@ -1,4 +1,4 @@
-//! Splits the lines of a trajectory into time spans, one for each week with the actions before the week.
+//! Splits the lines of a trajectory into time spans. Each span contains a week and the actions before it.
 
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -73,7 +73,8 @@ impl Timeline {
             before = Some(line);
         }
         timeline.clock_set_back = attendance.clock_set_back_count();
-        // The start of an idle period is recorded by a later line, so times can be classified only after all lines are read.
+        // The start of an idle period is known only from a later line, so times can be classified only after
+        // all lines are read.
         let last =
             AttendedWeek { from: attendance.week_start_ns(), to: attendance.end_ns(), is_inherited: false };
         let spans = timeline.spans.iter_mut().chain([&mut timeline.open]);

@@ -8,7 +8,7 @@ use novamind_session::ScoredForecast;
 
 const MAX_GROUPS: usize = 6;
 
-/// Returns the chart of cash by day, including the last forecasts that are not due yet.
+/// Returns the chart of cash by day, including the last forecasts if they are not due yet.
 pub fn cash_chart(report: &RunReport) -> Option<Block> {
     let points: Vec<(f64, f64)> =
         report.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();

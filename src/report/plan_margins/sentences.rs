@@ -93,7 +93,7 @@ fn group_sentence(sales: &PlanSales, plan: Plan, unit_cost: Option<f64>) -> Opti
     })
 }
 
-/// Lists profitable tiers one by one and combines the tiers with a loss.
+/// Lists the profitable tiers one by one, and combines the tiers that make a loss.
 fn other_models_sentence(margins: &[(u8, f64)]) -> Option<String> {
     let (earns, loses): (Vec<_>, Vec<_>) = margins.iter().partition(|(_, margin)| *margin >= 0.0);
     let mut parts: Vec<String> =

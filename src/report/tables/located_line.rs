@@ -15,7 +15,7 @@ pub(super) struct LocatedLine<'a> {
     seconds: f64,
 }
 
-/// A table row about a line: the line with its location, and the values of the table.
+/// A table row about a line: the line with its location, and the values of the table's own columns.
 pub(super) struct LineRow<'a, T> {
     pub located: &'a LocatedLine<'a>,
     pub row: T,

@@ -11,7 +11,7 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, &'a Query>>> {
         "via", "word", "typed, library, drill_down, derived or script; empty in format 1" => row.row.via.map(|via| serialized_name(&via));
         "rows", "count", "number of returned rows; empty if the query failed" => row.row.rows;
         "truncated", "0 or 1", "1: the result has more rows than were shown" => row.row.truncated;
-        "error", "code", "error code; empty without an error" => row.row.error;
+        "error", "code", "error code; empty if no error occurred" => row.row.error;
         "stopped", "0 or 1", "1: the user stopped the query" => row.row.stopped;
         "took_ms", "milliseconds", "duration" => row.row.took_ms;
         "message", "text", "error message; empty in format 1" => row.row.message;

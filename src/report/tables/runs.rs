@@ -45,7 +45,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
     columns! { run: Logbook;
         "run", "name", "name of the run" => run.run;
         "participant", "label", "label of the participant, assigned by the experimenter" => run.participant;
-        "study", "name", "study of the run; this and the next five columns are empty without a study"
+        "study", "name", "study of the run; this and the next five columns are empty if the run belongs to no study"
             => run.study.as_ref().map(|study| &study.name);
         "study_digest", "hash", "BLAKE3 hash of the study's protocol" => run.study.as_ref().map(|study| &study.digest);
         "condition", "text", "condition assigned to the participant"
@@ -154,7 +154,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "acting_calls_per_week", "per week", "accepted calls that changed the run, per simulated week" => rounded(run.measures.tools.per_week);
         "tools_used", "count", "number of different tools in accepted calls that changed the run" => run.measures.tools.tools.len();
         "tool_evenness", "share", "evenness of tool use in accepted calls that changed the run: entropy of the tools' shares divided by \
-         its maximum; empty with fewer than two tools" => run.measures.tools.evenness;
+         its maximum; empty if fewer than two tools were used" => run.measures.tools.evenness;
         "tools", "tool=count", "accepted calls by tool, including read-only calls" => format_tool_counts(&run.total);
         "screens", "screen=seconds", "active time on each screen (console only)" => format_screen_seconds(&run.total);
         "selects", "count", "objects opened: groups, threads, tools, posts, studies" => run.total.selects;

@@ -1,4 +1,4 @@
-//! Metadata of actions: interface, duration, and calls that were undone.
+//! Metadata of actions: interface, duration, and the calls that they undid.
 
 use serde_json::{Map, Value, json};
 

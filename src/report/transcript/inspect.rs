@@ -83,7 +83,8 @@ fn run_status(run: &Transcript) -> &'static str {
     }
 }
 
-/// Returns the score of the sample, or `None` for a run without a score: unfinished, abandoned or in a lesson.
+/// Returns the score of the sample, or `None` if the run has no score because it is unfinished, abandoned or
+/// part of a lesson.
 fn sample_score(run: &Transcript) -> Option<Value> {
     let end = run.end.as_ref()?;
     let explanation = match end.reason {
@@ -151,9 +152,9 @@ impl MessageStep {
     }
 }
 
-/// Returns the steps as events, from which Inspect builds its message tables. Each step of the player is a model event
-/// with the messages since the previous step. Each call is a tool event. The last model event has no output, and its
-/// input is the last result.
+/// Returns the steps as events, from which Inspect builds its message tables. Each step of the player becomes
+/// a model event with the messages since the previous step, and each call becomes a tool event. The last
+/// model event has no output, and its input is the last result.
 fn step_events(steps: &[MessageStep], created: &str, model: &str) -> Vec<Value> {
     let mut events = Vec::new();
     let (mut input, mut at) = (Vec::new(), created);

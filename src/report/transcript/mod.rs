@@ -1,8 +1,9 @@
 //! A run as a sequence of actions, which can be exported to formats of programs that study or train agents
 //! (docs/formats/exports.md).
 //!
-//! The run is replayed from its lines to reproduce the rows of every query, which the record does not contain. The
-//! actions contain only data that the player could see. Inspections and timings are stored separately.
+//! The run is replayed from its lines to reproduce the rows of every query, because the record does not
+//! contain these rows. The actions contain only data that the player could see. Inspections and timings are
+//! stored separately.
 
 mod atif;
 mod context;
@@ -46,7 +47,7 @@ pub struct Transcript {
     pub steps: Vec<TranscriptStep>,
     /// Lines that changed nothing, such as inspections, timings and presence.
     pub other_lines: Vec<Value>,
-    /// Record of the end of the run; `None` if the run has not ended.
+    /// Recorded end of the run; `None` if the run has not ended.
     pub end: Option<End>,
     /// Day and cash of the last recorded state.
     pub last_day_and_cash: (u32, f64),
@@ -74,7 +75,7 @@ pub struct TranscriptStep {
 pub enum TranscriptAction {
     /// A tool call.
     Call {
-        /// Called tool, which can be unknown to the program.
+        /// Called tool, which may be unknown to the program.
         tool: CalledTool,
         /// Arguments of the call.
         args: Value,
@@ -103,7 +104,8 @@ pub enum TranscriptAction {
         /// Result of the week; `None` if the week did not end.
         result: Option<WeekResult>,
     },
-    /// Command of an action that no interface for programs offers: a single day or a changed parameter.
+    /// An action that no interface for programs offers: a single day or a changed parameter. The value is the
+    /// command.
     Debugging(String),
 }
 
@@ -134,7 +136,7 @@ impl Transcript {
     /// recorded week.
     ///
     /// # Errors
-    /// The errors of [`Transcript::open`].
+    /// Returns the errors of [`Transcript::open`].
     pub fn open_observed(
         path: &Path,
         progress: &mut dyn FnMut(u32),

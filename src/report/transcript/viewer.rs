@@ -14,9 +14,9 @@ use novamind_record::trajectory::record::{CalledTool, RunEndReason};
 use novamind_session::identifiers::Group;
 use novamind_session::{Session, week_of_day};
 
-/// Maximum number of lines of an exported result. The viewer shows fewer.
+/// Maximum number of lines of an exported result. The viewer shows fewer lines.
 const MAX_RESULT_LINES: usize = 200;
-/// Number of digits of the state hash that stand for the hash of a commit.
+/// Number of digits of the state hash that replace the hash of a commit.
 const HASH_DIGITS: usize = 10;
 
 const GROUP_SQL: &str = "SELECT c.group_id, count(*), sum(s.seat_count)
@@ -75,7 +75,7 @@ struct ViewerDay {
 /// Replays the run in a folder and converts it. `progress` is called with each simulated day.
 ///
 /// # Errors
-/// The errors of [`Transcript::open`].
+/// Returns the errors of [`Transcript::open`].
 pub fn to_viewer(folder: &Path, progress: &mut dyn FnMut(u32)) -> Result<ViewerExport, RunError> {
     let (mut counts, mut cash_by_day, mut interface) = (Vec::new(), Vec::new(), Value::Null);
     let transcript = Transcript::open_observed(folder, progress, &mut |session| {
@@ -112,7 +112,7 @@ pub fn to_viewer(folder: &Path, progress: &mut dyn FnMut(u32)) -> Result<ViewerE
 /// Returns a manifest with the run added. `manifest` is the text of the existing manifest, if any.
 ///
 /// # Errors
-/// The existing manifest is not valid, or lists a run with the same id.
+/// Returns an error if the existing manifest is not valid or lists a run with the same id.
 pub fn add_to_viewer_manifest(manifest: Option<&str>, export: &ViewerExport) -> Result<Value, String> {
     let mut manifest: Value = match manifest {
         Some(text) => {
@@ -148,7 +148,7 @@ fn run_summary(run: &Transcript, id: &str, days: &Days, last: Option<&GroupCount
     let status = match run.end.as_ref().map(|end| end.reason) {
         Some(RunEndReason::Bankruptcy) => "bankrupt",
         Some(RunEndReason::Horizon | RunEndReason::Lesson) => "complete",
-        // The viewer knows no other status for a run that did not reach its last day.
+        // The viewer has no other status for a run that did not reach its last day.
         Some(RunEndReason::Abandoned) | None => "dnf",
     };
     // The viewer inserts the label as HTML.
@@ -304,7 +304,7 @@ fn describe_action(action: &TranscriptAction) -> Option<(String, Value, String)>
     })
 }
 
-/// Removes the lines of a result after the maximum.
+/// Removes the lines of a result beyond the maximum.
 fn shorten(text: &str) -> String {
     let count = text.lines().count();
     if count <= MAX_RESULT_LINES {

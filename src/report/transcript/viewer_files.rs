@@ -1,4 +1,4 @@
-//! The texts of a player as files: notes, stored code and forecasts, with their changes in each week.
+//! The texts of a player as files (notes, stored code and forecasts), with their changes in each week.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use novamind_tools::ToolId;
 /// Number of unchanged lines around the changed lines of a file.
 const CONTEXT_LINES: usize = 2;
 
-/// The files at the end of the last week, and now.
+/// The files at the end of the last week, and the current files.
 #[derive(Default)]
 pub(super) struct PlayerFiles {
     before: BTreeMap<String, String>,
@@ -22,7 +22,7 @@ impl PlayerFiles {
     /// Path of the notes.
     pub(super) const NOTES: &str = "notes.md";
 
-    /// Applies the effect of an action on the files.
+    /// Applies the effect of an action to the files.
     pub(super) fn add_action(&mut self, step: &TranscriptStep) {
         match &step.action {
             TranscriptAction::Note(Some(text)) => {

@@ -182,7 +182,7 @@ async fn accept_connections(
             drop(place);
         });
     }
-    // Repeat the stop, because a week has several calculations and a queued request may contain a script.
+    // Stop repeatedly, because a week has several calculations and a queued request may contain a script.
     let stop_code = async {
         loop {
             owner.stop_running_code();

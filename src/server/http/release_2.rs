@@ -20,7 +20,7 @@ const CODES_IN_ERROR: [&str; 3] = [REQUEST_ID_REQUIRED, INVALID_PAYLOAD, "reques
 const REQUEST_ID_REQUIRED: &str = "request_id_required";
 const INVALID_PAYLOAD: &str = "invalid_request_payload";
 
-/// Returns the routes that only a run with the interface of release 2 has, or answers differently.
+/// Returns the routes that exist only in the interface of release 2, or whose responses differ there.
 pub fn router(committed: &CommittedState) -> Router<RouteState> {
     let read = |respond: fn(&CommittedState) -> ApiResponse| {
         let committed = committed.clone();
@@ -52,7 +52,7 @@ async fn request_status(
     State(state): State<RouteState>,
     id: Result<Path<String>, PathRejection>,
 ) -> Response {
-    // The session has no id that is not UTF-8.
+    // An id that is not valid UTF-8 is unknown to the session.
     let id = id.map_or_else(|_| String::new(), |Path(id)| id);
     if state.handle.committed().is_some_and(|committed| committed.is_running(&id)) {
         return json_response(StatusCode::OK, &json!({ "request_id": id, "status": "pending" }));
@@ -60,7 +60,7 @@ async fn request_status(
     to_http_response(&state.handle.send(ApiRequest::RequestStatus { id }).await)
 }
 
-/// Returns the rejection of a request that has no valid id although its tool needs one, or whose body contains a
+/// Returns the rejection of a request that has no valid id although its tool needs one, or that contains a
 /// literal such as `NaN`. `literal` is the rejection of this literal.
 pub fn rejection(tool: &str, id: &Value, literal: Option<&Rejection>) -> Option<Rejection> {
     if !needs_request_id(tool) {

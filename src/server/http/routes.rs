@@ -37,7 +37,7 @@ pub(super) struct RouteState {
 pub struct ServedRun {
     /// Id of the served run.
     pub run: String,
-    /// Notification that a request to stop the server has arrived.
+    /// Notified when a request to stop the server has arrived.
     pub stop: Arc<Notify>,
 }
 
@@ -80,7 +80,7 @@ pub fn router(
         .with_state(state)
 }
 
-/// Returns the routes that release 2 does not have, or answers differently.
+/// Returns the routes that do not exist in release 2, or whose responses differ there.
 fn release_1_router() -> Router<RouteState> {
     Router::new()
         .route("/vars", get(|state: State<RouteState>| handle_read(state, ApiRequest::CurrentDay)))
@@ -169,7 +169,7 @@ async fn call(State(state): State<RouteState>, body: Body) -> Response {
         Ok(fields) => fields,
         Err(wrong) => return close_connection(to_http_response(&state.converted(wrong))),
     };
-    // Convert a name of another type to text, so that the tool is rejected as unknown.
+    // A name that is not a string is converted to text, so that the tool is rejected as unknown.
     let tool = match fields.take("tool") {
         Value::String(name) => name,
         Value::Null => String::new(),

@@ -34,7 +34,7 @@ impl Shutdown {
         Ok(Shutdown { request: Arc::default() })
     }
 
-    /// Returns the notification with which a request stops the server.
+    /// Returns the notifier through which a request stops the server.
     pub fn stop_notifier(&self) -> Arc<Notify> {
         self.request.clone()
     }

@@ -32,7 +32,7 @@ pub fn list() -> Vec<Resource> {
 /// Returns the content of a resource.
 ///
 /// # Errors
-/// There is no resource with this URI.
+/// No resource has this URI.
 pub async fn read(
     uri: &str,
     handle: &SessionHandle,

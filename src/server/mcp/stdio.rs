@@ -1,6 +1,6 @@
 //! Connects the protocol to standard input and output. The response to a line that is not valid JSON is a parse error.
 //!
-//! The protocol library drops such lines, so that the client would wait forever.
+//! The protocol library would drop such lines, and the client would wait forever.
 
 use serde_json::{Value, json};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, DuplexStream, duplex};
@@ -43,7 +43,7 @@ async fn forward_lines(mut forward: DuplexStream, problems: UnboundedSender<Stri
         if line.trim_ascii().is_empty() {
             continue;
         }
-        // Parsing to a value checks the depth in the same way as the protocol library.
+        // Parsing to a value applies the same depth limit as the protocol library.
         match serde_json::from_slice::<Value>(&line) {
             Ok(_) => {
                 if forward.write_all(&line).await.is_err() {

@@ -9,9 +9,9 @@ const MAX_CORRECTION_SECONDS: f64 = 2.0;
 /// kernel slews a clock.
 const MAX_DRIFT: f64 = 500e-6;
 
-/// Returns the lines before which the wall clock was changed, each with an explanation. The wall clock must not go
-/// back between two lines. The wall clock must agree with the monotonic clock between two `session` lines that were
-/// written since the same start of the machine.
+/// Returns the lines before which the wall clock was changed, each with an explanation. The wall clock must
+/// not go back between two lines. Between two `session` lines that were written since the same start of the
+/// machine, it must advance by as much as the monotonic clock.
 pub(super) fn clock_changes<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Vec<(&'a Line, String)> {
     let (mut found, mut before, mut earlier) = (Vec::new(), None::<&Line>, None::<(&Line, &Presence)>);
     let mut is_known = false;

@@ -29,7 +29,7 @@ pub enum FindingKind {
     Missing,
     /// The record of the run is damaged.
     Damaged,
-    /// The database or the snapshot contains lines that are missing in the trajectory.
+    /// The database or the snapshot contains lines that are missing from the trajectory.
     Cut,
     /// The re-simulation of the run does not reproduce the recorded states.
     NotReached,

@@ -1,4 +1,4 @@
-//! Detects recorded views of hidden state while sessions with the same seed had not ended.
+//! Detects recorded views of hidden state that took place before all sessions with the same seed had ended.
 
 use super::run_record::RunRecord;
 use super::{AuditFinding, FindingKind};

@@ -1,4 +1,4 @@
-//! The audit of a study: contradictions within and between its records, each with line and time.
+//! The audit of a study: finds contradictions within and between its records, each with line and time.
 //!
 //! A participant who controls a machine can change every file on the machine. The audit therefore compares the records with
 //! each other: the chain of hashes, the simulation, the database and the snapshot, the assignment, and two clocks. The
@@ -45,7 +45,8 @@ pub struct AuditReport {
     pub visits: VisitSummary,
 }
 
-/// Audits the runs of a study. `machines` contains the runs folders of its machines, or copies of these folders.
+/// Audits the runs of a study. `machines` contains the folders of runs of the study's machines, or copies of
+/// these folders.
 ///
 /// # Errors
 /// Returns an error if the public key of the lab cannot be read.
@@ -85,7 +86,7 @@ pub fn audit_study(study: &Study, machines: &[PathBuf]) -> Result<AuditReport, R
             other.kind,
         ))
     });
-    // Removes duplicate findings, because one folder may be a copy of another folder.
+    // One folder may be a copy of another folder, which results in duplicate findings.
     audit.findings.dedup();
     Ok(audit)
 }
@@ -152,7 +153,7 @@ fn unexaminable_run_finding(study: &Study, run: &RunRecord) -> Option<AuditFindi
     Some(AuditFinding { kind, run: run.id.clone(), participant, line: None, at, words })
 }
 
-/// A run of the study with all runs of the same machine.
+/// A run of the study, with all runs of the same machine.
 struct RunAudit<'a> {
     study: &'a Study,
     machine: &'a [RunRecord],
@@ -199,7 +200,7 @@ impl RunAudit<'_> {
         found
     }
 
-    /// Returns findings on files with lines that could not be appended to the trajectory.
+    /// Returns findings on files that contain lines that could not be appended to the trajectory.
     fn check_unsaved_lines(&self) -> Vec<AuditFinding> {
         let entries = std::fs::read_dir(&self.run.folder).into_iter().flatten().flatten();
         let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
@@ -220,7 +221,7 @@ impl RunAudit<'_> {
         Some(self.new_finding(FindingKind::NotReached, line, "", problem.to_string()))
     }
 
-    /// Returns a finding if the database or the snapshot contains lines that are missing in the trajectory.
+    /// Returns a finding if the database or the snapshot contains lines that are missing from the trajectory.
     fn check_against_database(&self, trajectory: &Trajectory) -> Option<AuditFinding> {
         let manifest = self.run.manifest.as_ref()?;
         let path = self.run.folder.join("trajectory.jsonl");

@@ -1,4 +1,5 @@
-//! Design problems of a protocol: questions, forecasts and blocks that do not fit the length of a session.
+//! Finds design problems of a protocol: questions and forecasts that do not fit the length of a session, and
+//! incomplete blocks.
 
 use super::{CheckItem, CheckOutcome};
 use crate::record::error::RunError;

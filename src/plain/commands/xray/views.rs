@@ -22,7 +22,7 @@ use novamind_tools::Rejection;
 /// The response of a view, a rejection, or an error in the arguments.
 type ViewResult = Result<Result<CommandResponse, Rejection>, ParseError>;
 
-/// Returns the response that contains a view as text and JSON.
+/// Returns the response that contains a view as text and as JSON.
 fn view_response<T>(
     seen: Result<T, Rejection>,
     words: fn(&T) -> Vec<String>,

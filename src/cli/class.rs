@@ -104,8 +104,8 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
                 decision,
                 figure,
             };
-            let is_seen = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
-            let on_screen = is_seen && !text && html.is_none();
+            let is_interactive = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
+            let on_screen = is_interactive && !text && html.is_none();
             show_class(&folder, display_options, html.as_deref(), on_screen.then_some(context))
         }
     }

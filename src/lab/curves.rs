@@ -103,10 +103,11 @@ pub fn group_curve_report(group: Group, params: &Params) -> LabReport {
         "Quality required by the mean customer, and quality at which shares of customers accept the price";
     let mut table = LabTable::new("curve", caption, columns);
     for point in sample.iter().step_by(PRICES_PER_ROW) {
-        let of_mean = (point.price <= curve.c_max).then(|| required_quality(point.price, &curve, params));
+        let mean_required_quality =
+            (point.price <= curve.c_max).then(|| required_quality(point.price, &curve, params));
         table.rows.push(vec![
             CellValue::number(point.price),
-            CellValue::number(of_mean),
+            CellValue::number(mean_required_quality),
             CellValue::number(point.p10),
             CellValue::number(point.median),
             CellValue::number(point.p90),

@@ -122,7 +122,7 @@ pub fn check_plays(lesson: &Arc<Lesson>, seeds: &[u64]) -> Result<LessonCheck, R
 fn run_play(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<PlayResult, RunError> {
     let mut result = PlayResult { seed, goals: Vec::new(), pitfalls: Vec::new() };
     for (part, lesson_part) in lesson.plan.parts.iter().enumerate() {
-        let of_part = PartPlay {
+        let part_play = PartPlay {
             lesson,
             part,
             seed: Some(seed),
@@ -131,7 +131,7 @@ fn run_play(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<Pla
             is_judged: true,
             needs_database: lesson.needs_database(),
         };
-        let session = play_part(&of_part, calls_for_waiting_threads)?;
+        let session = play_part(&part_play, calls_for_waiting_threads)?;
         let Some(lesson_progress) = session.lesson() else { continue };
         for (step, lesson_step) in lesson_part.steps.iter().enumerate() {
             let judged = lesson_progress.goal_results(step);
@@ -169,16 +169,16 @@ fn measure_figures(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> 
     }
     let runs: Vec<(usize, u64)> =
         (0..plays.len()).flat_map(|play| MEASURED_SEEDS.map(move |seed| (play, seed))).collect();
-    let of_runs: Result<Vec<Vec<Option<f64>>>, RunError> =
+    let values_by_run: Result<Vec<Vec<Option<f64>>>, RunError> =
         runs.par_iter().map(|(play, seed)| figure_values(lesson, &plays[*play], *seed)).collect();
-    let of_runs = of_runs?;
+    let values_by_run = values_by_run?;
     let mean = |figure: &MeasuredFigure| {
-        let of_play = runs.iter().zip(&of_runs).filter_map(|((play, _), values)| {
+        let play_values = runs.iter().zip(&values_by_run).filter_map(|((play, _), values)| {
             let at =
                 plays[*play].iter().position(|measured_figure| std::ptr::eq(*measured_figure, figure))?;
             values[at]
         });
-        let values: Vec<f64> = of_play.collect();
+        let values: Vec<f64> = play_values.collect();
         values.iter().sum::<f64>() / values.len() as f64
     };
     Ok(lesson
@@ -210,10 +210,10 @@ fn figure_values(
     let mut values = vec![None; figures.len()];
     let mut measure = |session: &mut Session, week: u32| {
         // The state of a bankrupt company does not change.
-        let stays = session.ended().is_some();
+        let is_final_state = session.ended().is_some();
         for (value, figure) in values.iter_mut().zip(figures) {
             let wanted = figure.week.unwrap_or(last);
-            if wanted == week || (stays && wanted > week) {
+            if wanted == week || (is_final_state && wanted > week) {
                 let problem =
                     |problem| RunError::InvalidRequest(format!("measured figure {}: {problem}", figure.name));
                 *value = measure_over_part(&figure.measurement, session).map_err(problem)?;

@@ -240,12 +240,12 @@ impl SessionHost<'_> {
         let library = QueryLibrary::load(self.configuration);
         let (end, session) =
             run_dialogue(session, library, self.style, Some(visit.study()), &mut self.lines)?;
-        let goes_on = session.ended().is_some() && visit.study().due_questions(&session).is_empty();
+        let is_finished = session.ended().is_some() && visit.study().due_questions(&session).is_empty();
         // Close the run, because an open run cannot be erased.
         drop(session);
         match end {
             EndReason::Withdrawn => Ok(visit.withdraw()?),
-            EndReason::Quit | EndReason::RunOver if goes_on => Ok(()),
+            EndReason::Quit | EndReason::RunOver if is_finished => Ok(()),
             EndReason::RecordLost => Err(SessionStop::Left(end.exit_code())),
             end => {
                 let text = format!(

@@ -69,22 +69,22 @@ impl Interpreter {
         let words = left.map_or(String::new(), |left| left.describe());
         let follows = left.map_or("", |left| left.describe_consequence(self.session.rules().limits.at_limit));
         let data = json!({ "limit": limit.limit, "event": limit.event, "minutes": limit.minutes, "used_ms": limit.used_ms });
-        let tell = |what: &str| {
+        let limit_response = |what: &str| {
             CommandResponse::success("limit", format!("time limit: {words}{what}"), data.clone())
         };
         match limit.event {
-            LimitEvent::Warned => vec![tell(&format!("; {follows}"))],
-            LimitEvent::Reminded => vec![tell("; please finish soon")],
+            LimitEvent::Warned => vec![limit_response(&format!("; {follows}"))],
+            LimitEvent::Reminded => vec![limit_response("; please finish soon")],
             LimitEvent::FiledNaively => {
                 let filing = NextWeekInput::for_time_limit(&self.session);
                 let filed = advance::advance_week(&mut self.session, filing);
-                vec![tell("; the week is submitted with naive forecasts"), filed]
+                vec![limit_response("; the week is submitted with naive forecasts"), filed]
             }
             LimitEvent::Paused => {
                 let stopped = self.session.activity().stop_clock(Some(TIME_LIMIT_RATIONALE));
                 let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
                 let stopped = stopped.map_or("", |()| "; the clock is stopped");
-                vec![tell(&format!("{stopped}; to restart the clock, type: {rest}"))]
+                vec![limit_response(&format!("{stopped}; to restart the clock, type: {rest}"))]
             }
         }
     }

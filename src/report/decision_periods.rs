@@ -77,7 +77,7 @@ pub fn decision_periods(
         let entries = parts.next().unwrap_or_default();
         let figures = entries.iter().rev().find_map(week_figures);
         let after = figures.map_or(cash, |figures| figures.cash);
-        let chapter = DecisionPeriod {
+        let decision_period = DecisionPeriod {
             week: week_of_day(decided.day + 1),
             last_week: week_of_day(decided.until),
             day: decided.day,
@@ -90,13 +90,13 @@ pub fn decision_periods(
         };
         cash = after;
         match periods.last_mut() {
-            Some(before) if before.is_continued_by(&chapter) => {
-                before.last_week = chapter.last_week;
-                before.end_day = chapter.end_day;
-                before.cash = chapter.cash;
-                before.cash_change += chapter.cash_change;
+            Some(before) if before.is_continued_by(&decision_period) => {
+                before.last_week = decision_period.last_week;
+                before.end_day = decision_period.end_day;
+                before.cash = decision_period.cash;
+                before.cash_change += decision_period.cash_change;
             }
-            _ => periods.push(chapter),
+            _ => periods.push(decision_period),
         }
     }
     periods
@@ -134,17 +134,17 @@ fn describe_actions(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String
         }
         _ => None,
     });
-    let mut deeds: Vec<(String, u32)> = Vec::new();
+    let mut counted_actions: Vec<(String, u32)> = Vec::new();
     // The entry that contains the text of a post replaces the entry that only mentions the post.
     for deed in decided.purchases.iter().filter(|deed| !deed.starts_with("post ")).cloned().chain(posts) {
-        match deeds.iter_mut().find(|(known, _)| *known == deed) {
+        match counted_actions.iter_mut().find(|(known, _)| *known == deed) {
             Some((_, times)) => *times += 1,
-            None => deeds.push((deed, 1)),
+            None => counted_actions.push((deed, 1)),
         }
     }
     let in_words =
         |(deed, times): (String, u32)| if times > 1 { format!("{deed} ({times} times)") } else { deed };
-    deeds.into_iter().map(in_words).collect()
+    counted_actions.into_iter().map(in_words).collect()
 }
 
 #[cfg(test)]
@@ -157,7 +157,7 @@ mod tests {
         let session = test_kit::play_weeks(5);
         let periods = decision_periods(session.company().decisions(), session.journal(), 1_000_000.0);
         let weeks: Vec<(u32, u32)> =
-            periods.iter().map(|chapter| (chapter.week, chapter.last_week)).collect();
+            periods.iter().map(|decision_period| (decision_period.week, decision_period.last_week)).collect();
         assert_eq!(weeks, [(1, 2), (3, 3), (4, 5)], "the third week has its own rationale");
         let prices = "price: A 0 → 12, B 0 → 25, C 0 → 55 $/month";
         assert!(periods[0].changes.contains(&prices.to_owned()), "{:?}", periods[0].changes);
@@ -168,10 +168,10 @@ mod tests {
             periods[1].rationale,
             "If B is cheaper, more will take it; otherwise we go back | <b>B</b>"
         );
-        let total: f64 = periods.iter().map(|chapter| chapter.cash_change).sum();
+        let total: f64 = periods.iter().map(|decision_period| decision_period.cash_change).sum();
         assert!((total - (session.company().observe().cash - 1_000_000.0)).abs() < 0.01);
         assert_eq!(
-            periods.last().map(|chapter| (chapter.end_day, chapter.cash)),
+            periods.last().map(|decision_period| (decision_period.end_day, decision_period.cash)),
             Some((35, session.company().observe().cash))
         );
     }

@@ -225,7 +225,7 @@ impl MarginSetting {
 pub fn margin_lines(
     sales: &PlanSales,
     terms: &ByPlan<DraftPlanTerms>,
-    lever: MarginSetting,
+    margin_setting: MarginSetting,
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
@@ -251,7 +251,7 @@ pub fn margin_lines(
         lines.push(row(format!("{plan} paid {}", dollars_and_cents(paid)), &|unit_cost| {
             plan_usage.margin(unit_cost)
         }));
-        match lever {
+        match margin_setting {
             MarginSetting::Price if differs_by_a_cent(set.price, paid) => {
                 let label = format!("{plan} list {}", dollars_and_cents(set.price));
                 lines.push(row(label, &|unit_cost| margin(set.price, plan_usage.compute_cost(unit_cost)?)));
@@ -271,7 +271,7 @@ pub fn margin_lines(
 pub fn margin_summary(
     sales: &PlanSales,
     terms: &ByPlan<DraftPlanTerms>,
-    lever: MarginSetting,
+    margin_setting: MarginSetting,
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
@@ -285,7 +285,7 @@ pub fn margin_summary(
         };
         let unit_cost = set.unit_cost(models);
         let margin_text = |margin: &dyn Fn(f64) -> Option<f64>| format_margin(unit_cost.and_then(margin));
-        let also = match lever {
+        let also = match margin_setting {
             MarginSetting::Price if differs_by_a_cent(set.price, paid) => {
                 let margin = margin_text(&|unit_cost| margin(set.price, plan_usage.compute_cost(unit_cost)?));
                 format!(", list {} {margin}", dollars_and_cents(set.price))
@@ -399,14 +399,15 @@ mod tests {
                 / paid;
         assert!(line.contains(&format!("[{}]", percent(full, 0))), "{line} without {full}");
         // The summary for small windows shows the same margins.
-        for (lever, draft) in
+        for (margin_setting, draft) in
             [(MarginSetting::Price, &dear), (MarginSetting::Quota, &full_quota), (MarginSetting::Tier, &now)]
         {
-            let lines = margin_lines(&sales, draft, lever, &models, 42);
+            let lines = margin_lines(&sales, draft, margin_setting, &models, 42);
             let set = |line: &str| Some(line.split_once('[')?.1.split_once(']')?.0.to_owned());
-            let of_b = |line: &&String| line.starts_with("B ") && !line.starts_with("B by");
-            let expected: Vec<String> = lines.iter().filter(of_b).filter_map(|line| set(line)).collect();
-            let summary = margin_summary(&sales, draft, lever, &models, 42);
+            let is_line_of_b = |line: &&String| line.starts_with("B ") && !line.starts_with("B by");
+            let expected: Vec<String> =
+                lines.iter().filter(is_line_of_b).filter_map(|line| set(line)).collect();
+            let summary = margin_summary(&sales, draft, margin_setting, &models, 42);
             let line = summary.iter().find(|line| line.starts_with("B ")).expect("plan B");
             let texts: Vec<&str> = line
                 .split(' ')

@@ -148,9 +148,9 @@ fn interpolate(from: f64, to: f64, share: f64) -> f64 {
 fn padded_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (min, max) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), value| (min.min(value), max.max(value)));
-    let apart = max - min > 1e-9 * max.abs().max(min.abs()).min(1.0);
+    let is_range_wide = max - min > 1e-9 * max.abs().max(min.abs()).min(1.0);
     (min <= max).then_some(match min {
-        _ if apart => (min, max),
+        _ if is_range_wide => (min, max),
         // A positive value is widened by factors, so that the range is positive and can be drawn on a logarithmic scale.
         level if level > 0.0 => (0.5 * level, 1.5 * level),
         level => (level - 1.0, level + 1.0),

@@ -105,13 +105,13 @@ fn parse_blocks(text: &str) -> Vec<MarkdownBlock> {
             }
             (Some(block), last) => {
                 // Lists and headings are separated from the text around them.
-                let apart = match (last.as_deref(), &block) {
+                let needs_blank_line = match (last.as_deref(), &block) {
                     (None | Some(MarkdownBlock::Blank), _) | (_, MarkdownBlock::Blank) => false,
                     (Some(MarkdownBlock::Heading(_)), _) | (_, MarkdownBlock::Heading(_)) => true,
                     (Some(MarkdownBlock::Item(..)), MarkdownBlock::Paragraph(_)) => true,
                     _ => false,
                 };
-                if apart {
+                if needs_blank_line {
                     blocks.push(MarkdownBlock::Blank);
                 }
                 blocks.push(block);

@@ -305,8 +305,8 @@ fn measures_section() -> String {
 }
 
 fn exclusion_section() -> String {
-    let of_sessions = FindingKind::ALL.iter().filter(|kind| **kind != FindingKind::NothingExamined);
-    let grave: Vec<&str> = of_sessions.map(|kind| kind.title()).collect();
+    let session_findings = FindingKind::ALL.iter().filter(|kind| **kind != FindingKind::NothingExamined);
+    let grave: Vec<&str> = session_findings.map(|kind| kind.title()).collect();
     format!(
         "## Exclusion\n\nRun `novamind study audit` before inspecting any result. The audit reads only the records. It cannot detect a run \
          whose lines were rewritten with correct hashes, or a run that was continued in a copy of its folder. A session is excluded, \

@@ -192,8 +192,12 @@ fn bar_spacing(at: &[f64]) -> f64 {
 fn x_scale(chart: &Chart, kind: AxisScale) -> Scale {
     let values: Vec<f64> = match &chart.plot {
         Plot::Lines { curves, band } => {
-            let of_band = band.iter().flat_map(|band| band.points.iter().map(|point| point.0));
-            curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0)).chain(of_band).collect()
+            let band_values = band.iter().flat_map(|band| band.points.iter().map(|point| point.0));
+            curves
+                .iter()
+                .flat_map(|curve| curve.points.iter().map(|point| point.0))
+                .chain(band_values)
+                .collect()
         }
         // The first and the last bar extend beyond the range by half a bar width.
         Plot::Stacks { positions: at, .. } => {
@@ -207,9 +211,13 @@ fn x_scale(chart: &Chart, kind: AxisScale) -> Scale {
 fn y_scale(chart: &Chart, kind: AxisScale) -> Scale {
     let mut values: Vec<f64> = match &chart.plot {
         Plot::Lines { curves, band } => {
-            let of_band =
+            let band_values =
                 band.iter().flat_map(|band| band.points.iter().flat_map(|point| [point.1, point.2]));
-            curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1)).chain(of_band).collect()
+            curves
+                .iter()
+                .flat_map(|curve| curve.points.iter().map(|point| point.1))
+                .chain(band_values)
+                .collect()
         }
         Plot::Stacks { positions: at, series: parts } => {
             let sum = |bar: usize, up: bool| -> f64 {

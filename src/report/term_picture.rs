@@ -179,10 +179,10 @@ fn spillover(numbers: &ParameterNumbers) -> TermPicture {
 /// it is hidden.
 fn quality_bank(seen: &VisibleFigures<'_>) -> TermPicture {
     let (base, shared) = seen.quality_base;
-    let of_group = |delivered_quality: &DeliveredQuality| {
+    let name_and_bonus = |delivered_quality: &DeliveredQuality| {
         (format!("added for {}", delivered_quality.group), delivered_quality.group_bonus)
     };
-    let groups = seen.quality.iter().map(of_group).filter(|bonus| bonus.1 > 0.0);
+    let groups = seen.quality.iter().map(name_and_bonus).filter(|bonus| bonus.1 > 0.0);
     let first = [("base quality".to_owned(), base), ("added for all groups".to_owned(), shared)];
     TermPicture {
         caption: "Base quality and added quality. The share that competitors have copied is never shown."

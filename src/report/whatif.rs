@@ -141,12 +141,12 @@ pub fn describe_decisions(
         format!("week {}: {name} {verb}: {}", week(decision.day), decision.rejection.message)
     });
     let possible = branch.newly_accepted.iter().map(|(line, day, tool)| {
-        let of_line = match notation {
+        let line_text = match notation {
             DecisionNotation::Calls => format!(" of line {line}"),
             DecisionNotation::Words(_) => String::new(),
         };
         format!(
-            "week {}: {}{of_line} was rejected and would now be accepted; it is skipped",
+            "week {}: {}{line_text} was rejected and would now be accepted; it is skipped",
             week(*day),
             notation.name(*tool)
         )

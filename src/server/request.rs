@@ -229,12 +229,12 @@ impl ApiResponse {
     /// Converts the response to the response of a tool call, in which every rejection is a normal result,
     /// including rejections of statements and weeks.
     pub fn into_tool_response(mut self) -> ApiResponse {
-        let is_of_tool = match self.status {
+        let is_tool_rejection = match self.status {
             ResponseStatus::BadRequest | ResponseStatus::Forbidden | ResponseStatus::TimedOut => true,
             ResponseStatus::Failed => self.body["code"].as_str().is_some_and(|code| code.starts_with("sql_")),
             _ => false,
         };
-        if is_of_tool {
+        if is_tool_rejection {
             self.status = ResponseStatus::Done;
         }
         self

@@ -335,25 +335,30 @@ fn scan_folder(path: &Path, without: &Path, depth: usize, found: &mut FoundPaths
 /// as a conflict.
 fn merge_records(run: String, mut records: Vec<FoundRun>, gathered: &mut CollectedRuns) {
     records.sort_by(|one, other| (other.hashes.len(), &one.source).cmp(&(one.hashes.len(), &other.source)));
-    let mut apart: Vec<FoundRun> = Vec::new();
+    let mut separate_records: Vec<FoundRun> = Vec::new();
     for record in records {
-        match apart.iter().find(|later| record.is_prefix_of(later)) {
+        match separate_records.iter().find(|later| record.is_prefix_of(later)) {
             Some(later) => gathered.notes.push(CollectNote::Superseded {
                 run: run.clone(),
                 path: record.source,
                 by: later.source.clone(),
             }),
-            None => apart.push(record),
+            None => separate_records.push(record),
         }
     }
-    if apart.len() == 1 {
-        gathered.runs.append(&mut apart);
+    if separate_records.len() == 1 {
+        gathered.runs.append(&mut separate_records);
         return;
     }
-    let fork = apart[0].hashes.iter().zip(&apart[1].hashes).take_while(|(one, other)| one == other).count();
-    let paths = apart.iter().map(|record| record.source.clone()).collect();
+    let fork = separate_records[0]
+        .hashes
+        .iter()
+        .zip(&separate_records[1].hashes)
+        .take_while(|(one, other)| one == other)
+        .count();
+    let paths = separate_records.iter().map(|record| record.source.clone()).collect();
     gathered.notes.push(CollectNote::Conflict { run: run.clone(), paths, line: fork + 1 });
-    gathered.conflicts.insert(run, apart);
+    gathered.conflicts.insert(run, separate_records);
 }
 
 /// Returns a note for each label that has several sessions of one study. Practice runs do not count.

@@ -402,9 +402,9 @@ impl Protocol {
             }
             _ => {}
         }
-        let of_session = self.seeds.seed.iter().chain(&self.seeds.block);
+        let session_seeds = self.seeds.seed.iter().chain(&self.seeds.block);
         if self.practice.offer != PracticeOffer::None
-            && of_session.into_iter().any(|seed| *seed == self.practice.seed)
+            && session_seeds.into_iter().any(|seed| *seed == self.practice.seed)
         {
             let problem = format!(
                 "{} is also the seed of a session. Choose another seed for the practice run",

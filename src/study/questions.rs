@@ -96,7 +96,7 @@ pub enum AnswerFormat {
     /// Free text.
     Text {
         /// Maximum number of characters.
-        #[serde(default = "most_letters")]
+        #[serde(default = "default_max_characters")]
         most: u32,
     },
     /// An attention check, in which one option is the expected answer.
@@ -108,7 +108,7 @@ pub enum AnswerFormat {
     },
 }
 
-fn most_letters() -> u32 {
+fn default_max_characters() -> u32 {
     2000
 }
 

@@ -37,10 +37,10 @@ pub struct Options {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let grid = PolicyGrid::find(&options.grid)?;
     let results = play_grid(&grid, options, context)?;
-    let is_of_the_paper = options.grid == PAPER_GRID
+    let is_paper_experiment = options.grid == PAPER_GRID
         && options.days.is_none_or(|days| days == PUBLISHED_DAYS)
         && options.scenario.as_deref().is_none_or(|name| name == DEFAULT_SCENARIO);
-    options.output.show(&baseline_report(&grid, is_of_the_paper, &results))
+    options.output.show(&baseline_report(&grid, is_paper_experiment, &results))
 }
 
 /// Plays the representatives first, because the runs of most other configurations equal the run of their

@@ -86,7 +86,7 @@ fn render_cast(
         RecordSource::File(path) => format!("NovaMind {}", path.display()),
     };
     console.replay(recorded, SeekTarget::Week(first - 1), false).map_err(failed)?;
-    let stays = |pause: Duration| pause.div_f64(options.speed);
+    let display_time = |pause: Duration| pause.div_f64(options.speed);
     let mut cast = Asciicast::new(options.size, &title);
     let mut frames = 0;
     loop {
@@ -103,7 +103,7 @@ fn render_cast(
         let frame = console.draw();
         cast.add_frame(
             &frame,
-            stays(if is_over || is_new_week { WEEK_FRAME_TIME } else { ACTION_FRAME_TIME }),
+            display_time(if is_over || is_new_week { WEEK_FRAME_TIME } else { ACTION_FRAME_TIME }),
         )
         .map_err(failed)?;
         frames += 1;

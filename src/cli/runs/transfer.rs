@@ -194,12 +194,12 @@ impl Export {
 
 /// Returns the visit records in the folders of runs. If a label is given, returns only the records of this label.
 fn find_visits(folders: &[PathBuf], label: Option<&str>) -> Vec<FoundVisit> {
-    let of_folder = |folder: &PathBuf| {
+    let visits_in_folder = |folder: &PathBuf| {
         let lines = read_visits(&folder.join(VISITS_FILE)).into_iter();
         let folder = folder.clone();
         lines.map(move |line| FoundVisit { line, folder: folder.clone() })
     };
-    let all = folders.iter().flat_map(of_folder);
+    let all = folders.iter().flat_map(visits_in_folder);
     all.filter(|visit| label.is_none_or(|label| visit.line.label == label)).collect()
 }
 

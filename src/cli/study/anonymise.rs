@@ -80,14 +80,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     create_private_file(&links_path)
         .and_then(|mut file| file.write_all(text.as_bytes()))
         .map_err(|error| failed(&links_path, &error))?;
-    let told_apart = smallest_group.map_or(String::new(), |(size, values)| {
+    let smallest_group_note = smallest_group.map_or(String::new(), |(size, values)| {
         format!(
             "the smallest group of sessions with the same seed and condition has {size} ({values}); to leave these \
              columns out, add --without seed,condition\n"
         )
     });
     print(&format!(
-        "the anonymized tables of {} are in {}; keep {} and {}, but do not publish them\n{told_apart}",
+        "the anonymized tables of {} are in {}; keep {} and {}, but do not publish them\n{smallest_group_note}",
         pluralize(links.len() as u32, "run"),
         options.out.display(),
         options.secret.display(),

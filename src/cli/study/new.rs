@@ -26,8 +26,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if folder.join(STUDY_FILE).exists() {
         return Err(Failure::failed(format!("{} is already a study; nothing was changed", folder.display())));
     }
-    let of_folder = || folder.file_name().map(|name| name.to_string_lossy().into_owned());
-    let name = options.name.clone().or_else(of_folder).unwrap_or_else(|| "study".to_owned());
+    let folder_name = || folder.file_name().map(|name| name.to_string_lossy().into_owned());
+    let name = options.name.clone().or_else(folder_name).unwrap_or_else(|| "study".to_owned());
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '-' };
     let name: String = name.chars().map(plain).collect();
     write_template(&TEMPLATE, folder, &name)?;

@@ -164,10 +164,10 @@ impl CollectionBuilder<'_> {
     fn belongs_to_class(&self, manifest: &Manifest) -> bool {
         let class = self.sources.class;
         let has_class_handout = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
-        let of_lesson = class.lesson.as_ref().zip(manifest.lesson.as_ref());
+        let lesson_pair = class.lesson.as_ref().zip(manifest.lesson.as_ref());
         has_class_handout
             || (manifest.handout.is_none()
-                && of_lesson.is_some_and(|(class_lesson, other)| class_lesson.name == other.name))
+                && lesson_pair.is_some_and(|(class_lesson, other)| class_lesson.name == other.name))
     }
 
     fn add_run(&mut self, found: &FoundRun) {

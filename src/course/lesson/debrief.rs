@@ -189,12 +189,15 @@ fn serialize_hint_usage<S: Serializer>(
 /// the lesson.
 fn student_calls(session: &Session, lesson_progress: &LessonProgress) -> Vec<ScheduledCalls> {
     let part = lesson_progress.current_part();
-    let of_lesson = |tool: ToolId| part.has_automatic_capacity() && tool == ToolId::SetCapacityTier;
+    let is_set_by_lesson = |tool: ToolId| part.has_automatic_capacity() && tool == ToolId::SetCapacityTier;
     let starts = part.start.iter().flat_map(|scheduled_calls| &scheduled_calls.calls);
-    let starts = starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();
+    let starts =
+        starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if is_set_by_lesson(*tool))).count();
     let days = session.params().run.days_per_week;
     let calls = session.journal().iter().filter_map(|entry| match entry {
-        JournalEntry::Call { day, tool, args, .. } if !of_lesson(*tool) => Some((*day, *tool, args.clone())),
+        JournalEntry::Call { day, tool, args, .. } if !is_set_by_lesson(*tool) => {
+            Some((*day, *tool, args.clone()))
+        }
         _ => None,
     });
     let scheduled = |(day, tool, args)| ScheduledCalls {

@@ -235,14 +235,14 @@ fn run_table(axes: &[AblationAxis<'_>], short: &[ShortRun<'_>], day: u32) -> Lab
         Column::number("peak_day", "peak day", Measure::Days),
         Column::text("state_hash", "state hash"),
     ];
-    let of_axes = axes.iter().map(|ablation_axis| {
+    let axis_experiments = axes.iter().map(|ablation_axis| {
         (ablation_axis.name, ablation_axis.policy, ablation_axis.settings, ablation_axis.results)
     });
     let short_experiments =
         short.iter().map(|short_run| ("short", short_run.name, short_run.settings, short_run.results));
     let mut table =
         LabTable { is_machine_readable_only: true, ..LabTable::new("runs", "Every run", columns) };
-    for (axis, policy, settings, results) in of_axes.chain(short_experiments) {
+    for (axis, policy, settings, results) in axis_experiments.chain(short_experiments) {
         for (setting, runs) in settings.iter().zip(&results.by_arm) {
             let row = |run: &RunResult| {
                 let then = (day <= run.days).then(|| subscribers_on(run, day));

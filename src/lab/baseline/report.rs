@@ -51,12 +51,12 @@ impl<'a> RankedResults<'a> {
             |arm: usize| median(&results.figures_of_arm(arm, |run| run.cash)).unwrap_or(f64::NEG_INFINITY);
         let mut order: Vec<usize> = (0..results.by_arm.len()).collect();
         order.sort_by(|one, other| middle(*other).total_cmp(&middle(*one)));
-        let of_seed = |at: usize| {
+        let ranks_on_seed = |at: usize| {
             let cash: Vec<f64> =
                 results.by_arm.iter().filter_map(|runs| runs.get(at)).map(|run| run.cash).collect();
             mean_ranks(&cash)
         };
-        RankedResults { results, order, ranks_by_seed: (0..results.seeds.len()).map(of_seed).collect() }
+        RankedResults { results, order, ranks_by_seed: (0..results.seeds.len()).map(ranks_on_seed).collect() }
     }
 
     fn runs_of_arm(&self, arm: usize) -> &[RunResult] {
@@ -271,8 +271,8 @@ fn cash_quartile_graph(ranked: &RankedResults<'_>) -> Graph {
 fn notes(grid: &PolicyGrid, is_published: bool, ranked: &RankedResults<'_>) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(best) = ranked.order.first() {
-        let alike = |arm: &&usize| ranked.runs_of_arm(**arm) == ranked.runs_of_arm(*best);
-        let first: Vec<usize> = ranked.order.iter().filter(alike).copied().collect();
+        let has_equal_runs = |arm: &&usize| ranked.runs_of_arm(**arm) == ranked.runs_of_arm(*best);
+        let first: Vec<usize> = ranked.order.iter().filter(has_equal_runs).copied().collect();
         let label = describe_ties(grid, &first);
         notes.push(match ranked.results.seeds.len() {
             1 => format!("Best configuration: {label}."),

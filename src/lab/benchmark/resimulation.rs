@@ -51,15 +51,15 @@ pub fn measure_resimulation(bench: &BenchContext) -> Result<Samples, BenchError>
     while mean_subscribers(&company.session) < f64::from(SMALL_SUBSCRIBERS) {
         company.measure_week()?;
     }
-    let parting = company.session.weeks().len() as u32 + 1 - BRANCH_WEEKS;
+    let branch_week = company.session.weeks().len() as u32 + 1 - BRANCH_WEEKS;
     let (mut first, mut next) = (Vec::new(), Vec::new());
     for _ in 0..bench.repetitions {
         let started = Instant::now();
         let mut what_if = WhatIf::open(&cause_analysis_folder(&company.session)?)?;
-        run_what_if(&mut what_if, parting)?;
+        run_what_if(&mut what_if, branch_week)?;
         first.push(started.elapsed().as_secs_f64());
         let again = Instant::now();
-        run_what_if(&mut what_if, parting)?;
+        run_what_if(&mut what_if, branch_week)?;
         next.push(again.elapsed().as_secs_f64());
     }
     company.grow_to_subscribers(LARGE_SUBSCRIBERS)?;

@@ -80,15 +80,16 @@ impl BoundAccount {
     }
 
     fn explain_revenue_difference(&self, line: AccountLine, params: &Params) -> String {
-        let of_companies = line == AccountLine::Enterprises;
-        let groups = Group::all().filter(|group| group.is_enterprise() == of_companies);
+        let is_enterprise_line = line == AccountLine::Enterprises;
+        let groups = Group::all().filter(|group| group.is_enterprise() == is_enterprise_line);
         let bills = self.assumptions.renewals.len() as f64;
         let full =
             bills * groups.map(|group| attainable_market::full_billing_revenue(group, params)).sum::<f64>();
-        let what = if of_companies { "the maximum seats of every account" } else { "the markets of day 0" };
+        let what =
+            if is_enterprise_line { "the maximum seats of every account" } else { "the markets of day 0" };
         format!(
             "{} of full billing is paid here; full billing of {what} at mean budgets is {} million, of which the published figure is {}",
-            percent(self.customer_revenue(of_companies) / full, 1),
+            percent(self.customer_revenue(is_enterprise_line) / full, 1),
             grouped_number(full / 1e6, 0),
             percent(1e6 * line.published_millions() / full, 1)
         )

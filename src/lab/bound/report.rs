@@ -125,7 +125,7 @@ fn assumption_table(account: &BoundAccount) -> LabTable {
 /// Returns a graph of the renewal shares by day: the mean of all groups, the lowest group and the highest group.
 fn renewal_graph(account: &BoundAccount) -> Graph {
     let days = || account.assumptions.renewals.iter().map(|day| f64::from(*day));
-    let of_day = |at: usize| {
+    let shares_on_day = |at: usize| {
         account.groups.iter().filter_map(move |bound_group| bound_group.renewal_shares.get(at).copied())
     };
     let series = |name: &str, of: &dyn Fn(usize) -> f64| Series {
@@ -139,9 +139,9 @@ fn renewal_graph(account: &BoundAccount) -> Graph {
         x_axis: GraphAxis { label: "day", scale: AxisScale::Whole },
         y_axis: GraphAxis { label: "share", scale: AxisScale::Linear },
         series: vec![
-            series("lowest group", &|at| of_day(at).fold(1.0, f64::min)),
-            series("highest group", &|at| of_day(at).fold(0.0, f64::max)),
-            series("mean", &|at| of_day(at).sum::<f64>() / count),
+            series("lowest group", &|at| shares_on_day(at).fold(1.0, f64::min)),
+            series("highest group", &|at| shares_on_day(at).fold(0.0, f64::max)),
+            series("mean", &|at| shares_on_day(at).sum::<f64>() / count),
         ],
         form: GraphForm::Lines,
     }

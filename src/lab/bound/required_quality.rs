@@ -19,9 +19,10 @@ pub fn required_quality(group: Group, params: &Params) -> (f64, f64) {
 /// the quality that competitors copy from the group's quality bank.
 pub fn added_expectation(group: Group, day: u32, quality_path: &SharedQualityPath, params: &Params) -> f64 {
     let applied = (1..day).filter(|day| is_drift_day(*day, &params.drift)).count() as f64;
-    let taste = applied * (group_drift_step(group, params).quality + global_drift_step(&params.drift));
+    let drift_increase =
+        applied * (group_drift_step(group, params).quality + global_drift_step(&params.drift));
     let reaction = params.group(group).competitor_reactivity_q_bias;
-    quality_path.raised_expectations[day as usize] * (1.0 + reaction) + taste
+    quality_path.raised_expectations[day as usize] * (1.0 + reaction) + drift_increase
 }
 
 /// Returns the quality that customers lose to overload.

@@ -48,11 +48,11 @@ pub fn attempts_report(title: String, tries: &[AttemptResult]) -> LabReport {
     }
     if !finished.is_empty() {
         let bankrupt = finished.iter().filter(|run| run.is_bankrupt).count();
-        let lives: Vec<f64> = finished.iter().map(|run| f64::from(run.survival_days)).collect();
+        let survival_times: Vec<f64> = finished.iter().map(|run| f64::from(run.survival_days)).collect();
         exhibit.notes.push(format!(
             "Bankrupt: {bankrupt} of {}; mean survival {:.1} days. `novamind lab table` compares runs that have the published length and starting cash with published runs.",
             finished.len(),
-            SampleStatistics::from_values(&lives).mean
+            SampleStatistics::from_values(&survival_times).mean
         ));
     }
     exhibit

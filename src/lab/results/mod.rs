@@ -287,7 +287,7 @@ fn best_run<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
 
 fn results_row((player, name): (PlayerKind, String), runs: &[&FinishedRun]) -> Option<ResultsRow> {
     let best = best_run(runs)?;
-    let lives: Vec<f64> = runs.iter().map(|run| published_survival(run)).collect();
+    let survival_times: Vec<f64> = runs.iter().map(|run| published_survival(run)).collect();
     let calls: Vec<f64> = runs.iter().map(|run| run.calls_per_week).collect();
     Some(ResultsRow {
         name,
@@ -298,9 +298,9 @@ fn results_row((player, name): (PlayerKind, String), runs: &[&FinishedRun]) -> O
         bankruptcies: Some(runs.iter().filter(|run| run.is_bankrupt).count() as u32),
         best_cash: best.score,
         best_run: Some(best.run.clone()),
-        max_survival_days: lives.iter().copied().reduce(f64::max),
-        mean_survival_days: Some(SampleStatistics::from_values(&lives).mean),
-        std_survival_days: (lives.len() > 1).then(|| population_std(&lives)),
+        max_survival_days: survival_times.iter().copied().reduce(f64::max),
+        mean_survival_days: Some(SampleStatistics::from_values(&survival_times).mean),
+        std_survival_days: (survival_times.len() > 1).then(|| population_std(&survival_times)),
         calls_per_week: Some(SampleStatistics::from_values(&calls).mean),
         beaten_count: count_published_below(best.score, best.generation).map(|(below, _)| below),
     })

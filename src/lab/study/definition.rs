@@ -423,8 +423,8 @@ fn validated_parameters(
         };
         let given = arm.spec.overrides.iter().map(|(key, _)| key).find(concerns);
         if let Some(key) = given {
-            let is_of_grid = flatten_table(&study_file.grid).iter().any(|(other, _)| other == key);
-            let within = if is_of_grid { "grid" } else { "overrides" };
+            let is_grid_key = flatten_table(&study_file.grid).iter().any(|(other, _)| other == key);
+            let within = if is_grid_key { "grid" } else { "overrides" };
             return Err(source.override_error(within, key, wrong.problem.clone()));
         }
     }

@@ -216,12 +216,12 @@ impl Interpreter {
             .rejected
             .iter()
             .map(|(day, what, rejection)| format!("\nday {day}: {what} was rejected: {}", rejection.message));
-        let stands = match self.session.ended() {
+        let run_state = match self.session.ended() {
             Some(ended) => format!("run {run} ended on day {day}: {}, ", ended.id()),
             None => format!("run {run} is on day {day} "),
         };
         let text = format!(
-            "{stands}with the decisions of its parent · {mode} · {}{}",
+            "{run_state}with the decisions of its parent · {mode} · {}{}",
             branch_name(decided),
             rejection_lines.collect::<String>()
         );
@@ -253,11 +253,11 @@ impl Interpreter {
         };
         let tree = related_runs(runs, id);
         let lines: Vec<String> = tree.iter().map(|related_run| related_run_line(related_run, id)).collect();
-        let one = |kin: &novamind_insight::RelatedRun| {
+        let one = |related: &novamind_insight::RelatedRun| {
             json!({
-                "run": kin.run.id, "depth": kin.depth, "left_in_week": kin.branched_in_week,
-                "first_change": kin.first_change,
-                "day": kin.run.day, "cash": kin.run.cash, "ended": kin.run.ended,
+                "run": related.run.id, "depth": related.depth, "left_in_week": related.branched_in_week,
+                "first_change": related.first_change,
+                "day": related.run.day, "cash": related.run.cash, "ended": related.run.ended,
             })
         };
         let data: Vec<Value> = tree.iter().map(one).collect();

@@ -134,7 +134,7 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
     let left_on_last_day = MAX_LAST_DAY_RATIO * f64::from(left) / 7.0;
     // Lower bound of the share of the last day's customers who are still subscribed.
     let remaining_share = 1.0 - left_on_last_day / (f64::from(total) + left_on_last_day).max(1.0);
-    let of_plan = |plan: Plan| {
+    let diagnose_plan = |plan: Plan| {
         let revenue = revenue_by_plan[plan];
         let PlanRevenue { subscriptions, seats, monthly } = revenue;
         let units: u64 = Group::all().map(|group| groups[group].last_usage[plan]).sum();
@@ -159,7 +159,7 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
             is_urgent: true,
         })
     };
-    Plan::ALL.into_iter().filter_map(of_plan).collect()
+    Plan::ALL.into_iter().filter_map(diagnose_plan).collect()
 }
 
 /// Proposes the best model tier whose compute cost is covered by the plan's revenue at the same usage. If

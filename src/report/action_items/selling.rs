@@ -297,8 +297,8 @@ impl<'a> GroupOffers<'a> {
     }
 
     fn was_changed_today(&self) -> bool {
-        let of_offers = [ToolId::SetPrices, ToolId::SetUsageQuotas, ToolId::SetModelTiers];
-        self.situation.observation.changes.iter().any(|change| of_offers.contains(&change.setting.tool()))
+        let offer_tools = [ToolId::SetPrices, ToolId::SetUsageQuotas, ToolId::SetModelTiers];
+        self.situation.observation.changes.iter().any(|change| offer_tools.contains(&change.setting.tool()))
     }
 
     /// Returns the description of a deficit, a proposed solution and its target. Proposes a new market study first if

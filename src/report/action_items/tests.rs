@@ -468,11 +468,11 @@ fn advertising_to_enterprises_without_requests_is_found() {
     ]);
     let session = play_company(23, 1e6, &calls, 7);
     let all = action_items(&session);
-    let of_ads = |need: &&ActionItem| {
+    let is_ad_removal = |need: &&ActionItem| {
         let ads = matches!(need.target, ActionTarget::Call(ToolId::SetTargetedAdSpend, _));
         ads && matches!(need.problem, Problem::NoRequests(_))
     };
-    let need = all.iter().find(of_ads).unwrap_or_else(|| panic!("{all:#?}"));
+    let need = all.iter().find(is_ad_removal).unwrap_or_else(|| panic!("{all:#?}"));
     let Problem::NoRequests(group) = need.problem else { panic!("{need:?}") };
     let ActionTarget::Call(_, arguments) = &need.target else { panic!("{need:?}") };
     let before = session.settings().targeted_ads.clone();
@@ -504,14 +504,14 @@ fn expensive_leads_item_names_the_earlier_cost() {
     for (tool, arguments) in healthy_calls_with(&[("set_targeted_ad_spend", ads)]) {
         session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
     }
-    let dear = |session: &Session| {
+    let find_lead_cost_item = |session: &Session| {
         action_items(session).into_iter().find(|need| matches!(need.problem, Problem::LeadCost(..)))
     };
     let week = (1..20).find(|_| {
         advance_weeks(&mut session, 1);
-        dear(&session).is_some()
+        find_lead_cost_item(&session).is_some()
     });
-    let need = dear(&session).unwrap_or_else(|| panic!("{week:?}"));
+    let need = find_lead_cost_item(&session).unwrap_or_else(|| panic!("{week:?}"));
     let cost = |from: u32, upto: u32, session: &mut Session| {
         let sql = format!(
             "SELECT sum(spend) / sum(leads_generated) FROM ad_channel_leads WHERE channel_id = 'content_marketing' AND \

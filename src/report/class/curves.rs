@@ -40,11 +40,11 @@ pub struct Scatter<'a> {
 }
 
 fn runs_in_part<'a>(ranking: &[RankedStudent<'a>], part: u32) -> Vec<(&'a str, &'a ClassRun)> {
-    let of_part = |student: &RankedStudent<'a>| {
+    let run_in_part = |student: &RankedStudent<'a>| {
         let run = student.runs.iter().find(|run| run.evidence.part == part).copied()?;
         Some((student.label, run))
     };
-    ranking.iter().filter_map(of_part).collect()
+    ranking.iter().filter_map(run_in_part).collect()
 }
 
 /// Returns the decisions of a part in which students differ, starting with the largest difference. Parts are numbered from 1.
@@ -89,11 +89,11 @@ fn names_by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
         (distinct.len(), (most - least) / most.abs().max(least.abs()).max(1e-9))
     };
     let names: BTreeSet<&String> = all.iter().flat_map(|by_name| by_name.keys()).collect();
-    let mut apart: Vec<((usize, f64), &String)> = names
+    let mut varying_names: Vec<((usize, f64), &String)> = names
         .into_iter()
         .map(|name| (spread(name), name))
         .filter(|((_, spread), _)| *spread > 1e-9)
         .collect();
-    apart.sort_by(|(one, _), (other, _)| other.0.cmp(&one.0).then(other.1.total_cmp(&one.1)));
-    apart.into_iter().map(|(_, name)| name.clone()).collect()
+    varying_names.sort_by(|(one, _), (other, _)| other.0.cmp(&one.0).then(other.1.total_cmp(&one.1)));
+    varying_names.into_iter().map(|(_, name)| name.clone()).collect()
 }

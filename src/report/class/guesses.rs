@@ -52,10 +52,10 @@ pub fn class_questions<'a>(view: &'a ClassView<'a>) -> Vec<ClassQuestion<'a>> {
 
 /// Returns the first run of each student in a part. Guesses of later tries are ignored because the student knows the outcome.
 fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
-    let of_part: Vec<&ClassRun> = view.valid_runs().filter(|run| run.evidence.part == part).collect();
-    let is_first = |at: usize| at == 0 || of_part[at - 1].label != of_part[at].label;
+    let part_runs: Vec<&ClassRun> = view.valid_runs().filter(|run| run.evidence.part == part).collect();
+    let is_first = |at: usize| at == 0 || part_runs[at - 1].label != part_runs[at].label;
     let firsts: Vec<&ClassRun> =
-        (0..of_part.len()).filter(|at| is_first(*at)).map(|at| of_part[at]).collect();
+        (0..part_runs.len()).filter(|at| is_first(*at)).map(|at| part_runs[at]).collect();
     firsts.into_iter()
 }
 

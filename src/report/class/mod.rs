@@ -154,7 +154,7 @@ impl ClassView<'_> {
         let Some(lesson) = self.lesson else {
             return "cash on the last day that every run has reached".to_owned();
         };
-        let of_part = |part: &LessonPart| match ranked_goal(part) {
+        let describe_part_goal = |part: &LessonPart| match ranked_goal(part) {
             Some((step, goal)) => {
                 let goal = &part.steps[step].goals[goal];
                 // An SQL statement has no name, so the text of the goal is shown instead.
@@ -162,7 +162,7 @@ impl ClassView<'_> {
             }
             None => "final cash".to_owned(),
         };
-        let goals: Vec<String> = lesson.plan.parts.iter().map(of_part).collect();
+        let goals: Vec<String> = lesson.plan.parts.iter().map(describe_part_goal).collect();
         let mean = if goals.len() > 1 { "; mean over the parts, 0 for unfinished ones" } else { "" };
         format!("{}, as a percentage of the reference play on the same seed{mean}", goals.join(" / "))
     }

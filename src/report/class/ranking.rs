@@ -19,7 +19,7 @@ pub struct RankedStudent<'a> {
 /// Returns the students by score, highest score first. Omits students who have no run that counts.
 pub fn rank_students<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
     let day = common_day(view);
-    let of_student = |label: &'a str| {
+    let rank_student = |label: &'a str| {
         let (score, runs) = match view.lesson {
             Some(_) => score_by_parts(view, label)?,
             None => score_by_cash(view, label, day)?,
@@ -27,7 +27,7 @@ pub fn rank_students<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
         Some(RankedStudent { label, name: String::new(), score, runs })
     };
     let labels = view.class.students.iter().map(|student| student.label.as_str());
-    let mut all: Vec<RankedStudent<'a>> = labels.filter_map(of_student).collect();
+    let mut all: Vec<RankedStudent<'a>> = labels.filter_map(rank_student).collect();
     all.sort_by(|one, other| other.score.total_cmp(&one.score).then_with(|| one.label.cmp(other.label)));
     for (at, student) in all.iter_mut().enumerate() {
         student.name =

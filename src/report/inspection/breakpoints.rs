@@ -132,9 +132,9 @@ fn describe_comparison(condition: &Condition, judged: &ConditionState) -> String
                 (false, Some(_)) => format!(" {} {threshold}", opposite_symbol(*relation)),
                 (false, None) => String::new(),
             };
-            let of_value = value(judged.value, &[*threshold]);
-            let of_before = value(judged.before, &[*threshold]);
-            format!("{quantity}{} = {of_value}{sign} (day before {of_before})", quantity.describe_days())
+            let value_text = value(judged.value, &[*threshold]);
+            let before_text = value(judged.before, &[*threshold]);
+            format!("{quantity}{} = {value_text}{sign} (day before {before_text})", quantity.describe_days())
         }
         Condition::Changed(quantity, direction) => {
             let moves = match (judged.is_true, direction) {
@@ -142,9 +142,12 @@ fn describe_comparison(condition: &Condition, judged: &ConditionState) -> String
                 (false, Direction::Rises) => "does not rise",
                 (false, Direction::Falls) => "does not fall",
             };
-            let of_value = value(judged.value, judged.before.as_slice());
-            let of_before = value(judged.before, judged.value.as_slice());
-            format!("{quantity}{} = {of_value}, {moves} (day before {of_before})", quantity.describe_days())
+            let value_text = value(judged.value, judged.before.as_slice());
+            let before_text = value(judged.before, judged.value.as_slice());
+            format!(
+                "{quantity}{} = {value_text}, {moves} (day before {before_text})",
+                quantity.describe_days()
+            )
         }
         Condition::Event(event) => {
             let answer = |happens: bool| if happens { "yes" } else { "no" };

@@ -201,9 +201,9 @@ mod tests {
                 "  9 S1: subscribes only in one",
             ]
         );
-        let of_days = describe_day_difference(&found, (3, 300));
-        assert_eq!(of_days[6], "customers: 1 differ, 1 subscribe only on day 3, 0 only on day 300");
-        assert_eq!(of_days[8], "  9 S1: subscribes only on day 3");
+        let day_lines = describe_day_difference(&found, (3, 300));
+        assert_eq!(day_lines[6], "customers: 1 differ, 1 subscribe only on day 3, 0 only on day 300");
+        assert_eq!(day_lines[8], "  9 S1: subscribes only on day 3");
         let alike = RunDifference { last_day: 28, first_day: None, difference: None };
         assert_eq!(describe_run_difference(&alike, ("a", "b")), ["the runs are identical up to day 28"]);
     }

@@ -81,14 +81,14 @@ fn headline(view: &IndividualView) -> String {
 }
 
 fn describe_retaining_terms(turning: &[DecisiveTerm], view: &IndividualView) -> String {
-    let turned = |without: &DecisiveTerm| {
+    let without_term_text = |without: &DecisiveTerm| {
         let (plan, surplus) = without.plan?;
         Some(format!(
             "without {}, plan {plan} would be acceptable (surplus {surplus:.4})",
             describe_term(without.term, view)
         ))
     };
-    match turning.iter().find_map(turned) {
+    match turning.iter().find_map(without_term_text) {
         Some(text) => text,
         None => "no single term is decisive".to_owned(),
     }

@@ -27,11 +27,11 @@ pub fn clean_up_line(text: &str) -> String {
         let is_word = last.is_some_and(char::is_alphanumeric);
         let has_sign = last == Some('-') && before_last.is_none_or(|letter| !letter.is_alphanumeric());
         let is_zero = number_alone.chars().all(|letter| matches!(letter, '0' | '.'));
-        let goes_on = behind.starts_with(['e', 'E']);
-        if is_zero && has_sign && !goes_on {
+        let has_exponent = behind.starts_with(['e', 'E']);
+        if is_zero && has_sign && !has_exponent {
             settled.pop();
         }
-        match to_scientific(number_alone).filter(|_| !is_word && !goes_on) {
+        match to_scientific(number_alone).filter(|_| !is_word && !has_exponent) {
             Some(short) => {
                 settled.push_str(&short);
                 settled.push_str(&number[number_alone.len()..]);

@@ -91,15 +91,15 @@ impl Timeline {
 
     /// Records breaks: gaps of more than ten minutes in play. A break belongs to the week in which it ended.
     fn add_breaks(&mut self, attendance: &Attendance, lines: &[Line], places: &[i64]) {
-        let mut apart: Vec<(i64, i64)> = Vec::new();
+        let mut merged_intervals: Vec<(i64, i64)> = Vec::new();
         for time in attendance.spans() {
-            match (time.time_use, apart.last_mut()) {
+            match (time.time_use, merged_intervals.last_mut()) {
                 (TimeUse::Active | TimeUse::Answering | TimeUse::Simulating, _) => {}
                 (_, Some((_, to))) if *to == time.from => *to = time.to,
-                _ => apart.push((time.from, time.to)),
+                _ => merged_intervals.push((time.from, time.to)),
             }
         }
-        for (from, to) in apart {
+        for (from, to) in merged_intervals {
             let seconds = attendance.spent_between(from, to).elapsed_seconds();
             let last = places.partition_point(|place| *place < to).min(lines.len() - 1);
             if seconds <= MIN_BREAK_SECONDS {

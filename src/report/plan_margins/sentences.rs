@@ -12,7 +12,7 @@ use novamind_session::identifiers::{ByPlan, Plan};
 pub fn margin_sentences(
     sales: &PlanSales,
     terms: &ByPlan<DraftPlanTerms>,
-    lever: MarginSetting,
+    margin_setting: MarginSetting,
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
@@ -22,7 +22,9 @@ pub fn margin_sentences(
     let mut lines =
         vec![format!("gross margins at day-{day} usage: the share of a price left after compute")];
     lines.extend(
-        Plan::ALL.into_iter().flat_map(|plan| plan_sentences(sales, plan, terms[plan], lever, models, day)),
+        Plan::ALL
+            .into_iter()
+            .flat_map(|plan| plan_sentences(sales, plan, terms[plan], margin_setting, models, day)),
     );
     lines
 }
@@ -31,7 +33,7 @@ fn plan_sentences(
     sales: &PlanSales,
     plan: Plan,
     set: DraftPlanTerms,
-    lever: MarginSetting,
+    margin_setting: MarginSetting,
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
@@ -43,7 +45,7 @@ fn plan_sentences(
     let on_own =
         |at_cost: &dyn Fn(f64) -> Option<f64>, of: &str| describe_margin(unit_cost.and_then(at_cost), of);
     let at_list = |unit_cost: f64| margin(set.price, plan_usage.compute_cost(unit_cost)?);
-    let is_at_list = lever == MarginSetting::Price && differs_by_a_cent(set.price, paid);
+    let is_at_list = margin_setting == MarginSetting::Price && differs_by_a_cent(set.price, paid);
     let mut line = format!(
         "plan {plan} on model tier {}: {}",
         set.tier,
@@ -58,7 +60,7 @@ fn plan_sentences(
             on_own(&at_list, &format!("the list price of {}", dollars_and_cents(set.price)))
         );
     }
-    if lever == MarginSetting::Quota {
+    if margin_setting == MarginSetting::Quota {
         let full =
             on_own(&|unit_cost| plan_usage.margin_at_full_quota(set.quota, unit_cost), "the price paid");
         line += &format!("; at full quota of {} units, {full}", format_whole(set.quota));

@@ -158,7 +158,7 @@ impl MessageStep {
 fn step_events(steps: &[MessageStep], created: &str, model: &str) -> Vec<Value> {
     let mut events = Vec::new();
     let (mut input, mut at) = (Vec::new(), created);
-    let of_model = |input: &[&Value], at: &str, choices: Value| {
+    let model_event = |input: &[&Value], at: &str, choices: Value| {
         json!({
             "event": "model",
             "timestamp": at,
@@ -178,7 +178,11 @@ fn step_events(steps: &[MessageStep], created: &str, model: &str) -> Vec<Value> 
             continue;
         }
         let stop_reason = if step.answer.is_some() { "tool_calls" } else { "stop" };
-        events.push(of_model(&input, at, json!([{ "message": step.message, "stop_reason": stop_reason }])));
+        events.push(model_event(
+            &input,
+            at,
+            json!([{ "message": step.message, "stop_reason": stop_reason }]),
+        ));
         input.clear();
         if let Some(answer) = &step.answer {
             let call = &step.message["tool_calls"][0];
@@ -196,7 +200,7 @@ fn step_events(steps: &[MessageStep], created: &str, model: &str) -> Vec<Value> 
             input.push(answer);
         }
     }
-    events.push(of_model(&input, at, json!([])));
+    events.push(model_event(&input, at, json!([])));
     events
 }
 

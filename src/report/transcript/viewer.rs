@@ -185,8 +185,8 @@ fn seats_on_day(at: &GroupCounts) -> Value {
 }
 
 fn seats_by_group(at: &GroupCounts) -> Vec<Value> {
-    let of_group = |(group, _, seats): &(Group, u64, u64)| json!({ "day": at.day, "group_id": group.id(), "count": seats });
-    at.groups.iter().map(of_group).collect()
+    let group_entry = |(group, _, seats): &(Group, u64, u64)| json!({ "day": at.day, "group_id": group.id(), "count": seats });
+    at.groups.iter().map(group_entry).collect()
 }
 
 fn day_to_json((day, of_day): (u32, ViewerDay)) -> (String, Value) {

@@ -182,10 +182,10 @@ fn thread_count() -> usize {
 
 fn report_header(calibration: f64, repetitions: usize, scenario: Option<&str>) -> String {
     let scenario = scenario.map_or(String::new(), |name| format!(" · scenario {name}"));
-    let often =
+    let repetitions_text =
         if repetitions == 1 { "one repetition".to_owned() } else { format!("medians of {repetitions}") };
     format!(
-        "novamind {} · {} threads · {often} · calibration loop {calibration:.3} s{scenario}\n\n{:<66} {:>10} {:>9} {:>9}  {:<14} {:>9}\n",
+        "novamind {} · {} threads · {repetitions_text} · calibration loop {calibration:.3} s{scenario}\n\n{:<66} {:>10} {:>9} {:>9}  {:<14} {:>9}\n",
         env!("CARGO_PKG_VERSION"),
         thread_count(),
         "",

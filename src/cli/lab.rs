@@ -90,7 +90,7 @@ struct GoldenOptions {
     /// Scenario [default: the scenario in reference.toml of the folder, otherwise the scenario of the policies]
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Seeds, at least 24; suspicious figures are rerun on the same number of subsequent seeds
+    /// Seeds, at least 24; suspicious figures are checked again on the same number of subsequent seeds
     #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
     seeds: SeedRange,
     /// Compare only this policy; can be repeated

@@ -49,7 +49,7 @@ enum LessonCommand {
     },
     /// Compare a finished part of a lesson with the reference play and the play that triggers the pitfall
     Debrief {
-        /// Id of the run, or `latest` for the newest run
+        /// ID of the run, or `latest` for the newest run
         run: String,
         /// Write the debrief to this file as a web page
         #[arg(long, value_name = "FILE", conflicts_with = "markdown")]

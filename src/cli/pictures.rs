@@ -19,7 +19,7 @@ use crate::worker::request::RecordSource;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Id of the run or a prefix of the id, or `latest` for the newest run
+    /// ID of the run or a prefix of the id, or `latest` for the newest run
     #[arg(default_value = "latest")]
     run: String,
     /// Draw only these screens, by name: overview, cash, customers, …

@@ -22,7 +22,7 @@ use crate::session::{
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Id of the run, or `latest` for the newest run
+    /// ID of the run, or `latest` for the newest run
     run: String,
     /// One read-only statement, or the name of a query in the library
     // A statement may begin with a comment, and therefore with hyphens.

@@ -18,7 +18,7 @@ use crate::worker::request::{RecordSource, Request};
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Id of the run, `latest` for the newest run, or the path of a run folder or trajectory
+    /// ID of the run, `latest` for the newest run, or the path of a run folder or trajectory
     run: String,
     /// Simulate the run again and compare every recorded state
     #[arg(long)]

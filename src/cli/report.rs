@@ -16,7 +16,7 @@ use crate::session::{Session, read_afterwards};
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Id of the run, or `latest` for the newest run
+    /// ID of the run, or `latest` for the newest run
     run: String,
     /// Report on how the run was played: time, breaks, screens, queries and tools by week
     #[arg(long)]

@@ -299,7 +299,7 @@ actions! {
         Last "last" "last" "Move to the last row."
         Open "open" "open" "Open the selected item."
         Close "close" "close" "Close the open item, clear the filter, or go back to the previous place."
-        Filter "filter" "filter" "Show only the rows that contain a text you type."
+        Filter "filter" "filter" "Show only the rows that contain the text you type."
         Sort "sort" "sort" "Sort by the selected column; press again to reverse, a third time to stop sorting."
     }
     Columns {

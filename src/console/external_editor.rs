@@ -17,7 +17,7 @@ use novamind_worker::message::Message;
 /// File mode: only the user can read and write the file.
 const PRIVATE_MODE: u32 = 0o600;
 
-/// An editor that uses the terminal.
+/// A running external editor that occupies the terminal.
 pub struct OpenEditor {
     process: u32,
     /// Settings of the terminal before the editor started.

@@ -52,7 +52,7 @@ struct Catalogue {
 
 static CATALOGUE: LazyLock<Vec<Table>> = LazyLock::new(|| {
     let text = include_str!("../../assets/tables.toml");
-    toml::from_str::<Catalogue>(text).expect("the bundled catalogue of tables is tested").table
+    toml::from_str::<Catalogue>(text).expect("the bundled catalog of tables is valid").table
 });
 
 static RELEASE_2_CATALOGUE: LazyLock<Vec<Table>> =

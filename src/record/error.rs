@@ -41,7 +41,7 @@ pub enum RunError {
          Nothing was changed; open the run with that version"
     )]
     OtherParameters {
-        /// Id of the run.
+        /// ID of the run.
         id: String,
         /// Version that recorded the run.
         version: String,
@@ -56,7 +56,7 @@ pub enum RunError {
          mechanics {expected}. Nothing was changed; open the run with that version"
     )]
     OtherMechanics {
-        /// Id of the run.
+        /// ID of the run.
         id: String,
         /// Version that recorded the run.
         version: String,
@@ -74,7 +74,7 @@ pub enum RunError {
          newer version"
     )]
     OtherFormat {
-        /// Id of the run.
+        /// ID of the run.
         id: String,
         /// Format number in the manifest.
         format: u32,
@@ -86,7 +86,7 @@ pub enum RunError {
         "run {id} is open in another program ({holder}); close it there, or watch it from here: `novamind play --run {id} --watch`"
     )]
     InUse {
-        /// Id of the run.
+        /// ID of the run.
         id: String,
         /// Process that has locked the run.
         holder: String,
@@ -105,7 +105,7 @@ pub enum RunError {
     /// The program panicked while closing a run.
     #[error("the program has a defect and failed while closing run {run}. {}", describe_saved_lines(run, folder.as_deref()))]
     Defect {
-        /// Id of the run.
+        /// ID of the run.
         run: String,
         /// Folder of the run; `None` for a run in memory.
         folder: Option<PathBuf>,
@@ -117,7 +117,7 @@ pub enum RunError {
         folder = .folder.display()
     )]
     NotWritable {
-        /// Id of the run.
+        /// ID of the run.
         id: String,
         /// Folder of the run.
         folder: PathBuf,

@@ -43,7 +43,7 @@ impl StudyStamp {
 /// An earlier run of the same participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EarlierRun {
-    /// Id of the earlier run.
+    /// ID of the earlier run.
     pub run: String,
     /// Mode of the earlier run.
     pub mode: Mode,
@@ -71,9 +71,9 @@ pub struct LessonStamp {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandoutStamp {
-    /// Id of the class: eight hexadecimal digits.
+    /// ID of the class: eight hexadecimal digits.
     pub class: String,
-    /// Id of the first run of the handout. Later parts and attempts have their own ids.
+    /// ID of the first run of the handout. Later parts and attempts have their own ids.
     pub run: String,
 }
 

@@ -2,7 +2,7 @@
 
 use super::formatting::{describe_runway, format_money, pluralize};
 use novamind_base::formatting::{capitalize, dollars, price_to_cents, signed_dollars};
-use novamind_session::{IdenticalPlans, Observation, Preview};
+use novamind_session::{IdenticalPlans, Level, Observation, Preview};
 
 /// Describes income, committed costs and runway before the next week, one line per topic.
 pub fn income_and_cost_lines(seen: &Observation) -> Vec<String> {
@@ -20,15 +20,19 @@ pub fn income_and_cost_lines(seen: &Observation) -> Vec<String> {
     if spent > 0.0 {
         lines.push(format!("One-time costs since the last week: {}", format_money(spent)));
     }
-    let flows = seen.expected_flows();
-    lines.push(match seen.last_week {
-        None => "No income yet".to_owned(),
-        Some(_) => format!(
-            "Expected in the next 4 weeks: income {} a week, compute and lead costs {}",
-            format_money(flows.income),
-            format_money(flows.variable)
-        ),
-    });
+    let days = seen.expected_days();
+    let (low, high) = seen.outlook.range(days, Level::Central80);
+    if seen.last_week.is_none() {
+        lines.push("No income yet".to_owned());
+    } else if days > 0 {
+        lines.push(format!(
+            "Cash in {} at these costs: {} expected, 80% range {} to {}",
+            pluralize(days.div_ceil(7), "week"),
+            format_money(seen.outlook.expected_cash(days)),
+            format_money(low),
+            format_money(high)
+        ));
+    }
     lines.push(capitalize(&describe_runway(&seen.runway)));
     lines
 }
@@ -100,7 +104,7 @@ mod tests {
         let played = test_kit::play_weeks(3);
         let lines = income_and_cost_lines(&played.company().observe());
         assert!(lines[0].starts_with("Committed: $") && !lines[0].contains("since"), "{lines:?}");
-        assert!(lines[1].starts_with("Expected in the next 4 weeks: income $"), "{lines:?}");
+        assert!(lines[1].starts_with("Cash in 4 weeks at these costs: $"), "{lines:?}");
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub const MIN_RISE_RATIO: f64 = 2.0;
 
 /// Results of advertising for a group in a channel over consecutive weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AdWindow {
+pub struct AdResults {
     /// Numbers of the first and the last week.
     pub weeks: (u32, u32),
     /// Number of leads in these weeks.
@@ -33,14 +33,14 @@ pub struct LeadCost {
     /// The advertised group.
     pub group: Group,
     /// Results of the last four weeks.
-    pub recent: AdWindow,
+    pub recent: AdResults,
     /// Results of the four consecutive earlier weeks with the lowest cost per lead. `None` if no four consecutive
     /// weeks had enough leads.
-    pub cheapest: Option<AdWindow>,
+    pub cheapest: Option<AdResults>,
 }
 
-impl AdWindow {
-    fn new(weeks: &[ByGroup<GroupWeek>], from: usize, (channel, group): (Channel, Group)) -> AdWindow {
+impl AdResults {
+    fn new(weeks: &[ByGroup<GroupWeek>], from: usize, (channel, group): (Channel, Group)) -> AdResults {
         let upto = (from + WINDOW_WEEKS).min(weeks.len());
         let sum = weeks[from..upto].iter().map(|week| &week[group].paid[channel]).fold(
             PaidLeads::default(),
@@ -50,7 +50,7 @@ impl AdWindow {
                 billed: sum.billed + paid_leads.billed,
             },
         );
-        AdWindow {
+        AdResults {
             weeks: (from as u32 + 1, upto as u32),
             leads: sum.leads,
             spend: sum.spend,
@@ -87,9 +87,9 @@ pub fn lead_costs_by_pair(weeks: &[ByGroup<GroupWeek>]) -> Vec<LeadCost> {
     let pairs = Group::all().flat_map(|group| Channel::ALL.map(|channel| (channel, group)));
     let mut costs: Vec<LeadCost> = pairs
         .filter_map(|pair| {
-            let recent = AdWindow::new(weeks, last, pair);
+            let recent = AdResults::new(weeks, last, pair);
             let before =
-                (0..(last + 1).saturating_sub(WINDOW_WEEKS)).map(|from| AdWindow::new(weeks, from, pair));
+                (0..(last + 1).saturating_sub(WINDOW_WEEKS)).map(|from| AdResults::new(weeks, from, pair));
             let cheapest = before
                 .filter(|spell| f64::from(spell.leads) >= MIN_LEADS)
                 .filter_map(|spell| Some((spell.cost_per_lead()?, spell)))

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use super::database_figures::ChannelRow;
+use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::{RunEndReason, is_naive_week};
 use novamind_session::identifiers::{Channel, Group};
 use novamind_session::{
@@ -68,7 +69,7 @@ impl BehaviorMeasures {
             targeted_development: targeted_development(session.company().decisions()),
             forecasts: session.company().forecast_scores(),
             filled_naively: naive_forecast_weeks(journal, session.manifest().days),
-            first_forecasts: first_forecast_scores(journal, session.cash_by_day()),
+            first_forecasts: first_forecast_scores(journal, session.weeks()),
             truly_best: true_best_channel_share(channels, |group| session.company().true_best_channel(group)),
             tools: tool_use(journal),
             planning: planning_measures(journal),
@@ -199,8 +200,8 @@ pub fn true_best_channel_share(
 pub const FIRST_WEEK_COUNT: usize = 4;
 
 /// Returns the scores of forecasts that were filed before the first four weeks, by horizon.
-pub fn first_forecast_scores(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ForecastScore> {
-    let filed = submitted_forecasts(journal, cash_by_day);
+pub fn first_forecast_scores(journal: &[JournalEntry], weeks: &[WeekFigures]) -> Vec<ForecastScore> {
+    let filed = submitted_forecasts(journal, weeks);
     let days: BTreeSet<u32> = filed.iter().map(|one| one.day).collect();
     let last = days.iter().nth(FIRST_WEEK_COUNT - 1).or(days.last()).copied().unwrap_or(0);
     let first: Vec<ScoredForecast> = filed.into_iter().filter(|one| one.day <= last).collect();
@@ -438,7 +439,7 @@ mod tests {
     #[test]
     fn first_forecast_scores_cover_four_weeks() {
         let session = test_kit::play_weeks(6);
-        let first = first_forecast_scores(session.journal(), session.cash_by_day());
+        let first = first_forecast_scores(session.journal(), session.weeks());
         assert_eq!(
             first.iter().map(|score| (score.horizon_days, score.scored)).collect::<Vec<_>>(),
             [(7, 4), (28, 3), (84, 0), (182, 0)]

@@ -7,7 +7,7 @@ use super::formatting::{
 };
 use super::measures::{BehaviorMeasures, MIN_CHANNEL_LEADS, PLANNING_WORDS};
 use super::page::{Bar, Block, NamedValue, Page, Table};
-use super::ranking::{ResultOrigin, published_results, published_targeted_shares};
+use super::ranking::{ResultOrigin, published_results, published_targeted_share_range};
 use super::run_report::{Bankruptcy, RunReport};
 use novamind_base::formatting::{capitalize, grouped_number, percent, signed_dollars};
 use novamind_record::trajectory::record::RunEndReason;
@@ -30,7 +30,7 @@ pub fn report_page(report: &RunReport) -> Page {
     blocks.extend(highlight_blocks(report));
     blocks.extend(customer_blocks(report));
     blocks.extend(forecast_blocks(report));
-    let shares = published_targeted_shares(seen.generation).filter(|_| report.shows_published_results());
+    let shares = published_targeted_share_range(seen.generation).filter(|_| report.shows_published_results());
     blocks.extend(behavior_blocks(&report.measures, shares));
     blocks.extend(decision_blocks(report));
     let mut tags = vec![
@@ -264,7 +264,7 @@ fn forecast_blocks(report: &RunReport) -> Vec<Block> {
     blocks
 }
 
-/// Formats leads per thousand dollars. Small values are formatted with decimals.
+/// Formats leads per thousand dollars. Values below 1 have three decimals; other values have one.
 fn format_leads_per_thousand(leads: f64) -> String {
     grouped_number(leads, if leads < 1.0 { 3 } else { 1 })
 }

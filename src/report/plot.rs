@@ -78,14 +78,14 @@ pub(super) fn plot_report(drawn: &[PlotSeries<'_>]) -> String {
 /// Draws series in a frame. Returns an empty text if there are no points.
 pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
     let (columns, rows) = (frame.width.saturating_sub(LABEL_WIDTH).max(8), frame.height.max(2));
-    let placed = |(x, y): &(f64, f64)| (frame.x_scale.position(*x), frame.y_scale.position(*y));
+    let scale_point = |(x, y): &(f64, f64)| (frame.x_scale.position(*x), frame.y_scale.position(*y));
     let all = || {
         let points = drawn.iter().flat_map(|plot_series| plot_series.points);
-        points.filter(|point| placed(point).0.is_finite() && placed(point).1.is_finite())
+        points.filter(|point| scale_point(point).0.is_finite() && scale_point(point).1.is_finite())
     };
     let Some((left, right)) = padded_range(all().map(|point| point.0)) else { return String::new() };
     let Some((low, high)) = padded_range(all().map(|point| point.1)) else { return String::new() };
-    let (from, to) = (placed(&(left, low)), placed(&(right, high)));
+    let (from, to) = (scale_point(&(left, low)), scale_point(&(right, high)));
     let mut cells = vec![vec![' '; columns]; rows];
     let place = |share: f64, size: usize| ((share * (size - 1) as f64).round() as usize).min(size - 1);
     let mut put = |x: f64, y: f64, sign: char| {
@@ -96,7 +96,7 @@ pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
         }
     };
     for series in drawn {
-        let points: Vec<(f64, f64)> = series.points.iter().map(placed).collect();
+        let points: Vec<(f64, f64)> = series.points.iter().map(scale_point).collect();
         points.iter().for_each(|(x, y)| put(*x, *y, series.mark));
         for pair in points.windows(2).filter(|_| series.is_line) {
             for at in 0..=columns {

@@ -300,7 +300,7 @@ pub fn count_published_below(cash: f64, generation: Generation) -> Option<(usize
 
 /// Returns the lowest and the highest published targeted share of development spending of a generation, or `None` if
 /// no results of the generation are published.
-pub fn published_targeted_shares(generation: Generation) -> Option<(f64, f64)> {
+pub fn published_targeted_share_range(generation: Generation) -> Option<(f64, f64)> {
     let agents = &published_results().table_of(generation)?.agent;
     let shares = agents.iter().filter_map(|agent| agent.targeted_development_share);
     Some(shares.fold((1.0, 0.0), |(least, most), share| (f64::min(least, share), f64::max(most, share))))
@@ -350,8 +350,8 @@ mod tests {
         assert_eq!(rank_score(None, &seen).rank, None);
         seen.seed = Some(7);
         assert_eq!(rank_score(Some(0.0), &seen).rank, Some(14), "a different seed stays comparable");
-        assert_eq!(published_targeted_shares(Generation::Release1), Some((0.11, 0.88)));
-        assert_eq!(published_targeted_shares(Generation::Release2), None);
+        assert_eq!(published_targeted_share_range(Generation::Release1), Some((0.11, 0.88)));
+        assert_eq!(published_targeted_share_range(Generation::Release2), None);
     }
 
     #[test]

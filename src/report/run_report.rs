@@ -75,7 +75,7 @@ impl RunReport {
             cash_by_day: session.cash_by_day().to_vec(),
             weeks: weeks.to_vec(),
             ranking: rank_score(seen.score, &seen),
-            forecasts: submitted_forecasts(journal, session.cash_by_day()),
+            forecasts: submitted_forecasts(journal, weeks),
             decision_periods: decision_periods(session.company().decisions(), journal, start_cash),
             highlights: highlights(weeks, session.cash_by_day(), &figures.outages, seen.ended),
             measures,

@@ -199,8 +199,6 @@ pub struct WeekReportInput<'a> {
     pub decisions: &'a [Decisions],
     /// Journal with all actions of the run.
     pub journal: &'a [JournalEntry],
-    /// Cash in dollars at the end of each day, day 0 first.
-    pub cash_by_day: &'a [f64],
     /// Publication days of customers' posts, of comments on the company's posts, and of news items, in this
     /// order.
     pub posts: [&'a [u32]; 3],
@@ -225,7 +223,6 @@ impl WeekReport {
             weeks: session.weeks(),
             decisions: session.company().decisions(),
             journal: session.journal(),
-            cash_by_day: session.cash_by_day(),
             posts: posts.each_ref().map(Vec::as_slice),
         })
     }
@@ -347,7 +344,7 @@ fn category_changes(
 }
 
 fn due_forecasts(sources: &WeekReportInput<'_>, day: u32) -> Vec<ScoredForecast> {
-    let mut due = submitted_forecasts(sources.journal, sources.cash_by_day);
+    let mut due = submitted_forecasts(sources.journal, sources.weeks);
     due.retain(|forecast| forecast.due_day() == day && forecast.outcome.is_some());
     due.sort_by_key(|due| due.forecast.horizon_days);
     due
@@ -438,13 +435,7 @@ mod tests {
         for (at, week_figures) in weeks.iter_mut().enumerate() {
             (week_figures.day, week_figures.days_run) = (7 * (at as u32 + 1), 7);
         }
-        let sources = WeekReportInput {
-            weeks: &weeks,
-            decisions: &[],
-            journal: &[],
-            cash_by_day: &[0.0],
-            posts: [&[], &[], &[]],
-        };
+        let sources = WeekReportInput { weeks: &weeks, decisions: &[], journal: &[], posts: [&[], &[], &[]] };
         WeekReport::from_input(&sources).expect("weeks")
     }
 

@@ -12,7 +12,7 @@ use novamind_record::folder::lock::SERVER_FILE;
 /// The address at which a server plays a run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Announcement {
-    /// Id of the served run.
+    /// ID of the served run.
     pub run: String,
     /// Port on 127.0.0.1. `None` if the client uses standard input and output, so that no other process can connect.
     #[serde(default, skip_serializing_if = "Option::is_none")]

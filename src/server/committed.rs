@@ -18,7 +18,7 @@ struct State {
     status: Value,
     /// Dashboard of the last week; empty before the first week.
     dashboard: String,
-    /// Id of the request that is being executed.
+    /// ID of the request that is being executed.
     running: Option<String>,
 }
 

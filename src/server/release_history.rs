@@ -31,7 +31,7 @@ pub struct ReleaseHistory {
 pub struct HistoryEntry {
     /// Number of the line, counted from 1.
     pub line: usize,
-    /// Id of the request.
+    /// ID of the request.
     pub request_id: String,
     /// Name of the tool in this program.
     pub tool: &'static str,

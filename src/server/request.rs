@@ -15,7 +15,7 @@ pub enum ApiRequest {
         tool: String,
         /// Arguments as they were sent.
         args: Value,
-        /// Id of the request, or null if the client sent no id.
+        /// ID of the request, or null if the client sent no id.
         request_id: Value,
     },
     /// Request to record a tool call that was rejected before the tool was executed.
@@ -35,7 +35,7 @@ pub enum ApiRequest {
         predictions: Value,
         /// The required current day, or null for any day.
         expected_day: Value,
-        /// Id of the request, or null if the client sent no id.
+        /// ID of the request, or null if the client sent no id.
         request_id: Value,
     },
     /// Request to run an SQL statement.
@@ -57,19 +57,19 @@ pub enum ApiRequest {
         name: Value,
         /// Text of the script.
         content: Value,
-        /// Id of the request, or null if the client sent no id.
+        /// ID of the request, or null if the client sent no id.
         request_id: Value,
     },
     /// Request to delete a stored script.
     DeleteDailyScript {
         /// Name of the script to delete.
         name: Value,
-        /// Id of the request, or null if the client sent no id.
+        /// ID of the request, or null if the client sent no id.
         request_id: Value,
     },
     /// Request for the status and the response of the request with an id.
     RequestStatus {
-        /// Id of the request in question.
+        /// ID of the request in question.
         id: String,
     },
     /// Request for the notes of the run.

@@ -21,7 +21,7 @@ use novamind_tools::Rejection;
 /// A question that asks for the preview of a run.
 #[derive(Debug, Clone)]
 pub struct PreviewQuestion {
-    /// Id of the run to preview.
+    /// ID of the run to preview.
     pub id: String,
 }
 

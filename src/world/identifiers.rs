@@ -99,7 +99,7 @@ impl Plan {
         self as usize
     }
 
-    /// Returns the plan at a position of the evaluation order.
+    /// Returns the plan at a position in the evaluation order.
     pub fn at(position: usize) -> Option<Plan> {
         Plan::ALL.get(position).copied()
     }

@@ -58,7 +58,7 @@ fn recorded_states(folder: &Path) -> Vec<(u32, String)> {
     trajectory.lines.iter().filter_map(state).collect()
 }
 
-/// Returns sums of the ledger, the customers and the subscriptions in the database of a run.
+/// Returns aggregate rows of the tables `ledger`, `customers` and `subscriptions` in the database of a run.
 fn money_and_customer_rows(session: &mut Session) -> Vec<Vec<novamind::database::Cell>> {
     let mut all = Vec::new();
     for sql in [

@@ -512,15 +512,16 @@ fn player_post_receives_reactions_comments_and_a_notification() {
         judged[0].effect,
         judged[0].reason()
     );
-    let viral = judged.iter().filter(|judgement| judgement.effect.abs() >= 0.6).count() as f64;
+    let strong_reaction_count =
+        judged.iter().filter(|judgement| judgement.effect.abs() >= 0.6).count() as f64;
     let comments = "SELECT count(*) FROM social_media_posts WHERE reply_to_agent_post_id = 1";
-    assert_eq!(query_number(&mut session, comments), viral);
+    assert_eq!(query_number(&mut session, comments), strong_reaction_count);
     let listed = query_text(
         &mut session,
         "SELECT comment_post_ids FROM agent_social_media_posts WHERE agent_post_id = 1",
     );
     let listed: Vec<u32> = serde_json::from_str(&listed).expect("a JSON list");
-    assert_eq!(listed.len() as f64, viral);
+    assert_eq!(listed.len() as f64, strong_reaction_count);
 
     advance_week(&mut session);
     let answers = call_tool(&mut session, "get_social_posts", json!({"limit": -1}));

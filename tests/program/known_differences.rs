@@ -66,7 +66,7 @@ impl Fixture {
     }
 
     /// Returns the data of the last response to a command with this prefix.
-    fn fixture_data(&self, line: &str) -> &Value {
+    fn last_response_data(&self, line: &str) -> &Value {
         let is_it = |answer: &&Value| answer["input"].as_str().is_some_and(|input| input.starts_with(line));
         let answer =
             self.responses.iter().rev().find(is_it).unwrap_or_else(|| panic!("{line} was not played"));
@@ -121,7 +121,7 @@ impl Fixture {
 
     /// Returns the dashboard of the last week.
     fn dashboard(&self) -> &str {
-        self.fixture_data("next")["dashboard"].as_str().expect("a dashboard")
+        self.last_response_data("next")["dashboard"].as_str().expect("a dashboard")
     }
 }
 
@@ -185,63 +185,67 @@ const PLAYER_INFORMATION_EXAMPLES: [Example; 15] = [
     }),
     ("the fact that an enterprise that", |stage| {
         stage.assert_term_contains("retention thread", &["pays nothing"]);
-        assert!(stage.fixture_data("inbox")["threads"][0]["days_left"].is_u64());
+        assert!(stage.last_response_data("inbox")["threads"][0]["days_left"].is_u64());
     }),
     ("the number and group of the enterprise", |stage| {
-        let rows = list(&stage.fixture_data("sql SELECT message")["rows"]);
+        let rows = list(&stage.last_response_data("sql SELECT message")["rows"]);
         assert_contains(rows[0]["message"].as_str().expect("a message"), &["Customer ", "(E1, "]);
     }),
     ("a name for every enterprise,", |stage| {
-        let shown = &stage.fixture_data("inbox")["threads"][0]["company"];
+        let shown = &stage.last_response_data("inbox")["threads"][0]["company"];
         assert!(shown.as_str().is_some_and(|name| !name.is_empty()), "{shown}");
-        assert!(!stage.fixture_data("sql SELECT * FROM enterprise_turns").to_string().contains("company"));
+        assert!(
+            !stage.last_response_data("sql SELECT * FROM enterprise_turns").to_string().contains("company")
+        );
     }),
     ("the delivered quality next to", |stage| {
-        let group = &stage.fixture_data("fit")["groups"][0];
+        let group = &stage.last_response_data("fit")["groups"][0];
         assert!(group["floor"]["least"].is_f64() && group["plans"][0]["quality"].is_f64(), "{group}");
     }),
     ("the numbers of leads,", |stage| {
-        assert!(stage.fixture_data("fit")["groups"][0]["last_4_weeks"]["leads"].is_u64());
-        let funnel = &stage.fixture_data("inbox")["funnels"][0];
+        assert!(stage.last_response_data("fit")["groups"][0]["last_4_weeks"]["leads"].is_u64());
+        let funnel = &stage.last_response_data("inbox")["funnels"][0];
         assert!(["came", "no_plan_good_enough", "asked", "signed"].iter().all(|name| funnel[name].is_u64()));
     }),
     ("for each thread, all offers,", |stage| {
-        let thread = &stage.fixture_data("inbox")["threads"][0];
+        let thread = &stage.last_response_data("inbox")["threads"][0];
         let names = ["offers_so_far", "last_offer", "asked", "asked_plan", "needed_quota"];
         assert!(names.iter().all(|name| thread.get(name).is_some()), "{thread}");
     }),
     ("the outcome of new leads", |stage| {
-        assert!(list(&stage.fixture_data("queries first-offers")["rows"])[0]["signed_percent"].is_number());
+        assert!(
+            list(&stage.last_response_data("queries first-offers")["rows"])[0]["signed_percent"].is_number()
+        );
     }),
     ("the change in cash over the last week", |stage| {
-        let report = stage.fixture_data("report week");
+        let report = stage.last_response_data("report week");
         assert!(list(&report["parts"]).iter().any(|part| part["part"] == "payments"), "{report}");
         assert!(report["decided"].is_array());
     }),
     ("the runway", |stage| {
-        assert!(stage.fixture_data("status").get("runway_weeks").is_some());
-        assert!(stage.fixture_data("changes")["committed_per_day"].is_number());
+        assert!(stage.last_response_data("status").get("runway_weeks").is_some());
+        assert!(stage.last_response_data("changes")["committed_per_day"].is_number());
         let filled = stage.play(&["--days", "28"], "next naive\nsql SELECT count(*) AS n FROM predictions\n");
         assert_eq!(filled[2]["data"]["rows"][0]["n"], 4);
     }),
     ("the gross margin", |stage| {
         assert_contains(&stage.play_after_fixture("check set_prices C=20\n"), &["gross margins", "plan C"]);
-        assert!(stage.fixture_data("changes")["alike_plans"].is_array());
+        assert!(stage.last_response_data("changes")["alike_plans"].is_array());
     }),
     ("next week's peak usage at", |stage| {
-        assert!(stage.fixture_data("status")["next_peak_at_last_growth"].is_number());
+        assert!(stage.last_response_data("status")["next_peak_at_last_growth"].is_number());
     }),
     ("the distributions of duration", |stage| {
-        assert!(stage.fixture_data("check start_research")["research"]["spread"].is_object());
+        assert!(stage.last_response_data("check start_research")["research"]["spread"].is_object());
         let check = stage.baseline("check start_research_project tier=1\n");
         assert!(check[1]["data"]["research"]["spread"].is_null(), "{}", check[1]);
     }),
     ("the errors of earlier forecasts", |stage| {
-        assert!(list(&stage.fixture_data("queries forecast-record")["rows"])[0]["inside"].is_number());
+        assert!(list(&stage.last_response_data("queries forecast-record")["rows"])[0]["inside"].is_number());
     }),
     ("the meaning of a term, figure,", |stage| {
         stage.assert_term_contains("daily_usage", &["daily_usage"]);
-        assert!(!stage.fixture_data("glossary cohort")["terms"][0]["text"].is_null());
+        assert!(!stage.last_response_data("glossary cohort")["terms"][0]["text"].is_null());
     }),
 ];
 
@@ -260,7 +264,7 @@ const PLAYER_ACTION_EXAMPLES: [Example; 5] = [
         assert_contains(&std::fs::read_to_string(tables.join("weeks.csv")).expect("weeks"), &["undone"]);
     }),
     ("A person can answer waiting enterprises", |stage| {
-        let sent = stage.fixture_data("rules send");
+        let sent = stage.last_response_data("rules send");
         assert!(sent["rules"][0]["companies"].as_u64() > Some(0), "{sent}");
         assert_eq!(sent["calls"][0]["tool"], "send_enterprise_deal");
     }),
@@ -269,7 +273,7 @@ const PLAYER_ACTION_EXAMPLES: [Example; 5] = [
     }),
     ("A person sees charts", |stage| {
         assert!(
-            stage.fixture_data("glossary cohort")["picture"]
+            stage.last_response_data("glossary cohort")["picture"]
                 .as_str()
                 .is_some_and(|picture| picture.contains('*'))
         );
@@ -277,7 +281,7 @@ const PLAYER_ACTION_EXAMPLES: [Example; 5] = [
 ];
 
 const AGENT_ACTION_EXAMPLES: [Example; 1] = [("Agents run Python in", |stage| {
-    assert_contains(&stage.fixture_data("python_exec").to_string(), &["2"]);
+    assert_contains(&stage.last_response_data("python_exec").to_string(), &["2"]);
     stage.assert_manual_contains("python_exec", &["#", "Python"]);
 })];
 
@@ -480,7 +484,7 @@ const QUERY_EXAMPLES: [Example; 9] = [
     ("shows `source_group_id`", |stage| {
         let shown = stage.query("SELECT * FROM social_media_posts");
         assert!(!columns(&shown).contains(&"source_group_id"), "{shown}");
-        assert!(stage.fixture_data("get_social_posts")["posts"][0].get("source_group_id").is_some());
+        assert!(stage.last_response_data("get_social_posts")["posts"][0].get("source_group_id").is_some());
     }),
     ("reports `plan = 'A'` in", |stage| {
         let of_plan = stage.query("SELECT * FROM subscriptions WHERE plan = 'A'");
@@ -527,7 +531,7 @@ const DOCUMENT_EXAMPLES: [Example; 4] = [
     }),
     ("has posts, messages and notifications", |stage| {
         assert!(
-            stage.fixture_data("get_social_posts")["posts"][0]["content"]
+            stage.last_response_data("get_social_posts")["posts"][0]["content"]
                 .as_str()
                 .is_some_and(|text| text.len() > 9)
         );

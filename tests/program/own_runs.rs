@@ -6,7 +6,7 @@ use std::fs;
 
 use crate::support::home::{Home, ProgramOutput, run_id};
 
-/// Parses CSV rows by column name.
+/// Parses CSV output into one map per row, keyed by column name.
 fn csv_rows(program_output: &ProgramOutput) -> Vec<BTreeMap<String, String>> {
     assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     let mut reader = csv::Reader::from_reader(program_output.stdout.as_bytes());

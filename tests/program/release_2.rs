@@ -269,7 +269,8 @@ fn targeted_operations_apply_all_scopes_or_none() {
     let all = json!({ "by_group": { "S1": 10 }, "by_plan": { "A": 20 }, "by_group_plan": { "S2": { "B": 30 } },
         "by_customer": { "42": 40 } });
     assert_eq!(total(all), 100.0);
-    // A map without scopes replaces the 10 of S1 by 5, and the scope by its older name replaces the 5 by 7.
+    // A map without scopes replaces `by_group`, so the 10 for S1 becomes 5. `targeted_spend`, the older name of
+    // `by_group`, then replaces the 5.
     assert_eq!(total(json!({ "S1": 5 })), 95.0);
     assert_eq!(total(json!({ "targeted_spend": { "S2": 7 } })), 97.0);
     let rows = |server: &Server| {

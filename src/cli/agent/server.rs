@@ -34,7 +34,7 @@ pub enum Authentication {
 /// A run that an agent plays.
 #[derive(Debug, Clone)]
 pub struct AgentRun {
-    /// Id of the agent's run.
+    /// ID of the agent's run.
     pub id: String,
     /// Absolute path of the run folder.
     pub folder: PathBuf,

@@ -10,7 +10,7 @@ use crate::record::folder::runs::find_run_to_read;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Id of the run, or `latest` for the newest run; must be a debug run or a finished run
+    /// ID of the run, or `latest` for the newest run; must be a debug run or a finished run
     #[arg(value_name = "RUN")]
     run: String,
 }

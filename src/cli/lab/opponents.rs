@@ -14,7 +14,7 @@ use crate::session::Session;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Id of the run, or `latest` for the newest run; must be a debug run or a finished run
+    /// ID of the run, or `latest` for the newest run; must be a debug run or a finished run
     #[arg(value_name = "RUN")]
     run: String,
     /// Print as JSON

@@ -48,17 +48,17 @@ enum RunsCommand {
     },
     /// Show the settings and the progress of a run
     Show {
-        /// Id of the run, or `latest` for the newest run
+        /// ID of the run, or `latest` for the newest run
         run: String,
     },
     /// Print the folder of a run
     Path {
-        /// Id of the run, or `latest` for the newest run
+        /// ID of the run, or `latest` for the newest run
         run: String,
     },
     /// End an unfinished run permanently
     End {
-        /// Id of the run, or `latest` for the newest unfinished run
+        /// ID of the run, or `latest` for the newest unfinished run
         run: String,
     },
     /// Recover the undamaged prefix of a run as a new branch; the damaged run does not change

@@ -28,7 +28,7 @@ use novamind_study::{FoundVisit, VISITS_FILE, read_visits};
 
 #[derive(Debug, Args)]
 pub struct Export {
-    /// Id of the run, or `latest` for the newest run
+    /// ID of the run, or `latest` for the newest run
     #[arg(required_unless_present = "all", conflicts_with = "all")]
     run: Option<String>,
     /// Export all runs, with tables of runs, weeks, forecasts, queries, events, answers and notes

@@ -138,10 +138,10 @@ impl App {
             _ => None,
         };
         let Some((calls, text)) = answers else { return self.execute_effects(vec![week]) };
-        let both = calls.into_iter().map(|(tool, arguments)| Effect::call(tool, arguments));
-        let both = both.chain([week.clone()]).collect();
+        let answer_effects = calls.into_iter().map(|(tool, arguments)| Effect::call(tool, arguments));
+        let effects = answer_effects.chain([week.clone()]).collect();
         let text = format!("Answer with the rules that you sent last, and run the week:\n{text}");
-        let dialog = ConfirmDialog::new("Answer and next week", text, both);
+        let dialog = ConfirmDialog::new("Answer and next week", text, effects);
         self.open_dialog(dialog.with_alternative(Action::SkipAnswers, vec![week]));
     }
 

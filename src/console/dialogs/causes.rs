@@ -18,7 +18,7 @@ use novamind_tui::widgets::sparkline::bar;
 use novamind_worker::causes::CausesQuestion;
 use novamind_worker::question::{OutgoingQuestion, Pending};
 
-const MAX_PAGE_WIDTH: u16 = 110;
+const MAX_DIALOG_WIDTH: u16 = 110;
 /// Minimum number of visible causes below a long text.
 const MIN_LISTED_CAUSES: usize = 4;
 
@@ -157,7 +157,7 @@ impl Dialog for CausesDialog {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
-        let width = MAX_PAGE_WIDTH.min(area.width.saturating_sub(2));
+        let width = MAX_DIALOG_WIDTH.min(area.width.saturating_sub(2));
         let inner = width.saturating_sub(4) as usize;
         let (title, text, role) = match &self.answer {
             None => (self.record_name(), self.progress_text(), Role::Warning),

@@ -15,7 +15,7 @@ use novamind_base::formatting::{dollars, grouped_number, percent};
 use novamind_record::rules::ResultsDisclosure;
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_report::measures::{BehaviorMeasures, BestTriedChannelSpend, MIN_CHANNEL_LEADS};
-use novamind_report::ranking::{Ranking, ResultOrigin, published_targeted_shares, rank_score};
+use novamind_report::ranking::{Ranking, ResultOrigin, published_targeted_share_range, rank_score};
 use novamind_report::{RunReport, card_to_svg, card_to_text};
 use novamind_session::{ForecastScore, SeekTarget};
 use novamind_tui::canvas::{Canvas, centered_rect, truncate_to_width};
@@ -197,7 +197,8 @@ impl FinalPage {
         }
         parts.push(match &self.run_report {
             Some(report) => {
-                let shares = published_targeted_shares(company.observation.generation).filter(|_| published);
+                let shares =
+                    published_targeted_share_range(company.observation.generation).filter(|_| published);
                 measure_lines(canvas, &report.measures, width, roomy, shares)
             }
             None => vec![TextLine::from(canvas.span("reading the ledger …", Role::Dim))],

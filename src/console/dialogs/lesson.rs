@@ -16,7 +16,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{ScrollState, TextField};
 use novamind_worker::request::{LessonRequest, Request};
 
-const MAX_PAGE_WIDTH: u16 = 84;
+const MAX_DIALOG_WIDTH: u16 = 84;
 
 /// The lesson page.
 #[derive(Default)]
@@ -128,7 +128,7 @@ impl LessonDialog {
         context: &ScreenContext<'_>,
     ) {
         let Some(answer) = &self.answer else { return };
-        let width = MAX_PAGE_WIDTH.min(area.width);
+        let width = MAX_DIALOG_WIDTH.min(area.width);
         let inner = width.saturating_sub(4) as usize;
         let text = wrap(&question.text, inner);
         let choices: Vec<(usize, Vec<String>)> = question
@@ -300,7 +300,7 @@ impl Dialog for LessonDialog {
         if let Some(question) = self.open_question(context).filter(|_| self.closes_after_answer) {
             return self.draw_answer(canvas, area, question, context);
         }
-        let widest_area = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), area.height);
+        let widest_area = centered_rect(area, MAX_DIALOG_WIDTH.min(area.width), area.height);
         let lines =
             task_lines(page, context, (widest_area.width.saturating_sub(4) as usize, TaskPlace::FullPage));
         let dialog_area = centered_rect(area, widest_area.width, (lines.len() as u16).saturating_add(2));

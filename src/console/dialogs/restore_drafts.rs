@@ -11,7 +11,7 @@ use novamind_tui::canvas::{Canvas, centered_rect, truncate_to_width};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 
-const MAX_PAGE_WIDTH: u16 = 76;
+const MAX_DIALOG_WIDTH: u16 = 76;
 
 /// The dialog that offers to restore drafts.
 pub struct RestoreDraftsDialog {
@@ -49,14 +49,14 @@ impl Dialog for RestoreDraftsDialog {
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let room = usize::from(area.height.saturating_sub(5)).max(1);
         let each = (room / self.texts.len().max(1)).saturating_sub(1).max(1);
-        let width = usize::from(area.width.min(MAX_PAGE_WIDTH).saturating_sub(4)).max(8);
+        let width = usize::from(area.width.min(MAX_DIALOG_WIDTH).saturating_sub(4)).max(8);
         let mut lines = vec![Line::from(canvas.span("Unsent when the program last stopped:", Role::Text))];
         for (place, text) in &self.texts {
             lines.push(Line::from(canvas.span(truncate_to_width(place, width), Role::Header)));
             let shown = last_lines(text, width.saturating_sub(2), each).into_iter();
             lines.extend(shown.map(|line| Line::from(canvas.span(format!("  {line}"), Role::Text))));
         }
-        let dialog_area = centered_rect(area, MAX_PAGE_WIDTH, lines.len() as u16 + 2);
+        let dialog_area = centered_rect(area, MAX_DIALOG_WIDTH, lines.len() as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, "Unsent text", "", true);
         canvas.draw_lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);

@@ -56,7 +56,7 @@ pub struct TourFacts<'a> {
 pub struct NextWeekFacts {
     /// Number of the step, counted from 1, while the dialog is open.
     pub open_step: Option<usize>,
-    /// Whether a rationale is written.
+    /// Whether the user has entered a rationale.
     pub has_rationale: bool,
 }
 

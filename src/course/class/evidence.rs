@@ -248,7 +248,8 @@ pub enum RunVerdict {
     Conflicting,
     /// The run used a different lesson, or a different version of the lesson.
     OtherLesson,
-    /// The run started from the handout of a different student, or its past differs from the past in the handout.
+    /// The run started from the handout of a different student, or its events before the handout differ from those in
+    /// the handout.
     OtherHandout,
     /// The run did not start from a handout of this class.
     Unknown,

@@ -254,7 +254,7 @@ fn find_call(seq: u64, moves: &[RecordedStep]) -> Result<&RecordedCall, Rejectio
     }
     let message = match is_parameter_line(seq, moves) {
         true => format!(
-            "line {seq} sets a parameter, which has no arguments; write \"drop {seq}\", and \"set KEY VALUE\" for another value"
+            "line {seq} sets a parameter and has no arguments to change; to remove it, type \"drop {seq}\"; to set another value, also type \"set KEY VALUE\""
         ),
         false => format!(
             "line {seq} is not a decision in the weeks of this what-if; to list the decisions, type: whatif WEEK"

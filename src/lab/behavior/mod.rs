@@ -176,19 +176,23 @@ fn tool_table(runs: &[BehaviorRun]) -> LabTable {
     let mut by_tool: Vec<(&str, u32, SampleStatistics)> = names
         .into_iter()
         .map(|name| {
-            let a_week: Vec<f64> =
+            let calls_per_week: Vec<f64> =
                 runs.iter().map(|run| f64::from(calls_of(run, name)) / weeks(run)).collect();
-            (name, runs.iter().map(|run| calls_of(run, name)).sum(), SampleStatistics::from_values(&a_week))
+            (
+                name,
+                runs.iter().map(|run| calls_of(run, name)).sum(),
+                SampleStatistics::from_values(&calls_per_week),
+            )
         })
         .collect();
     by_tool.sort_by(|one, other| other.1.cmp(&one.1).then_with(|| one.0.cmp(other.0)));
-    let row = |(name, calls, a_week): &(&str, u32, SampleStatistics)| {
+    let row = |(name, calls, calls_per_week): &(&str, u32, SampleStatistics)| {
         vec![
             CellValue::text(*name),
             CellValue::Number(f64::from(*calls)),
             CellValue::Number(f64::from(*calls) / f64::from(all.max(1))),
-            CellValue::Number(a_week.mean),
-            CellValue::number((a_week.count > 1).then_some(a_week.std)),
+            CellValue::Number(calls_per_week.mean),
+            CellValue::number((calls_per_week.count > 1).then_some(calls_per_week.std)),
         ]
     };
     let columns = vec![

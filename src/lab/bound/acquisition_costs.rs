@@ -9,8 +9,8 @@ use novamind_world::params::Params;
 /// Number of steps of the numerical integration over market saturation.
 const INTEGRATION_STEPS: u32 = 20_000;
 
-/// Returns the cost in dollars of ads in the group's best channel that fill the group's market by the first
-/// renewal.
+/// Returns the cost, in dollars, of filling the group's market by the first renewal with ads in the group's best
+/// channel.
 pub fn advertising_cost(group: Group, premises: &BoundAssumptions, params: &Params) -> f64 {
     let group_params = params.group(group);
     let first = premises.renewals.first().copied().unwrap_or(premises.days);

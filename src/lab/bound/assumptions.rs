@@ -108,7 +108,7 @@ impl BoundAssumptions {
             (
                 "targeted development",
                 format!(
-                    "slack {} times the spending whose gain over {} days, weighted by {}, closes the widest gap of the mean customer",
+                    "{} times (slack) the spending whose gain over {} days, weighted by {}, closes the widest gap of the mean customer",
                     self.slack,
                     self.mean_spending_age(),
                     self.counted_gain

@@ -98,7 +98,7 @@ const CLAIMS: &[Claim] = &[
         },
     },
     Claim {
-        statement: "the same share of payments fails in each group and month",
+        statement: "in each group and month, the same share of payments fails in all runs",
         unit_names: ("rate", "rates"),
         draws: |luck| &luck.failed_payments,
         compared_keys: ComparedKeys::Common,

@@ -214,7 +214,7 @@ impl TargetBudgets {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "operations must be subscribers or an amount of dollars a day")]
 pub enum OperationsRule {
-    /// A rule by name: max(100, 0.05 * active subscriptions), $ per day.
+    /// The rule `subscribers`: max(100, 0.05 * active subscriptions), $ per day.
     Named(OperationsRuleName),
     /// A fixed budget, $ per day.
     Fixed(f64),

@@ -13,7 +13,7 @@ use novamind_insight::CurveExplorer;
 use novamind_report::curve::{describe_omissions, describe_outcome};
 use novamind_report::fit::{Fit, FitCriterion, LeadFlow, PlanFit, fits};
 use novamind_report::insights::{insights_as_ranges, overview_with_ages};
-use novamind_report::lead_costs::{AdWindow, LeadCost, lead_costs_by_pair};
+use novamind_report::lead_costs::{AdResults, LeadCost, lead_costs_by_pair};
 use novamind_report::research::projects_with_means;
 use novamind_session::identifiers::{Group, Plan};
 use novamind_session::{GroupWeek, Session};
@@ -169,7 +169,7 @@ fn flow_to_json(flow: LeadFlow) -> Value {
 }
 
 fn cost_to_json(pair: &LeadCost) -> Value {
-    let spell = |spell: &AdWindow| {
+    let spell = |spell: &AdResults| {
         json!({
             "weeks": [spell.weeks.0, spell.weeks.1],
             "leads": spell.leads,
@@ -189,7 +189,7 @@ fn cost_to_json(pair: &LeadCost) -> Value {
 
 fn cost_line(pair: &LeadCost) -> String {
     let each = |value: Option<f64>| value.map_or("–".to_owned(), dollars_and_cents);
-    let words = |spell: &AdWindow| {
+    let words = |spell: &AdResults| {
         format!("{} per lead, {} per first bill", each(spell.cost_per_lead()), each(spell.cost_per_bill()))
     };
     let before = pair.cheapest.map_or(String::new(), |spell| {

@@ -37,7 +37,7 @@ pub struct Manifest {
     /// Version number of the mechanics; absent in runs of the first builds.
     #[serde(default = "first_mechanics")]
     pub mechanics: u32,
-    /// Id of the run: eight hexadecimal digits.
+    /// ID of the run: eight hexadecimal digits.
     pub id: String,
     /// Time of creation, RFC 3339.
     pub created: String,

@@ -20,7 +20,7 @@ use novamind_world::params::{HorizonRule, Interface};
 /// Summary of a run for run lists.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSummary {
-    /// Id of the run.
+    /// ID of the run.
     pub id: String,
     /// Time of creation, RFC 3339.
     pub created: String,
@@ -61,7 +61,7 @@ pub struct RunSummary {
     pub ended: Option<RunEndReason>,
     /// Whether a server has the run open.
     pub is_served: bool,
-    /// Id of the recorded run, if the folder is a copy under another name.
+    /// ID of the recorded run, if the folder is a copy under another name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub copy_of: Option<String>,
     /// Why the run cannot be read; `None` if the run is readable.

@@ -167,7 +167,7 @@ impl TrajectoryWriter {
     /// path of the copy to the error.
     fn save_copy_if_replaced(&mut self, error: RunError) -> RunError {
         let RunError::FileReplaced { path, .. } = error else { return error };
-        let aside = self.saved_copy.get_or_insert_with(|| copy_path(&path)).clone();
+        let aside = self.saved_copy.get_or_insert_with(|| saved_copy_path(&path)).clone();
         let error = RunError::FileReplaced { saved_copy: self.write_copy(&aside).map(|()| aside), path };
         self.loss_reason = Some(error.to_string());
         error
@@ -270,7 +270,7 @@ impl TrajectoryWriter {
 }
 
 /// Returns a path next to a trajectory, for a copy of its confirmed lines.
-fn copy_path(path: &Path) -> PathBuf {
+fn saved_copy_path(path: &Path) -> PathBuf {
     let moment: String = now().chars().take(19).filter(|letter| letter.is_ascii_alphanumeric()).collect();
     path.with_file_name(format!("trajectory-unsaved-{moment}Z.jsonl"))
 }

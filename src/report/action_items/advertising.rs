@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::selling::{GroupOffers, OfferDeficit};
 use super::{ActionItem, ActionTarget, DiagnosisContext, Problem, RISK_DAYS};
 use crate::formatting::{format_money, pluralize};
-use crate::lead_costs::{AdWindow, LeadCost, lead_costs_by_pair};
+use crate::lead_costs::{AdResults, LeadCost, lead_costs_by_pair};
 use novamind_base::formatting::{dollars_and_cents, json_number};
 use novamind_session::identifiers::{Channel, Group};
 use novamind_tools::ToolId;
@@ -68,6 +68,10 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
     if ads <= 0.0 {
         return None;
     }
+    // Ads whose customers already pay more with their first bill than the ads cost are not too expensive.
+    if pair.recent.cost_per_bill().is_some_and(|cost| cost < mean_bill(situation, group)) {
+        return None;
+    }
     let (first, last) = before.weeks;
     let text = format!(
         "{} × {group}: in the last {} {}. In weeks {first} to {last} {}.",
@@ -87,8 +91,15 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
     })
 }
 
+/// Returns the mean monthly revenue per subscriber of a group, in dollars.
+fn mean_bill(situation: &DiagnosisContext<'_>, group: Group) -> f64 {
+    let Some(groups) = situation.last_group_week() else { return 0.0 };
+    let subscribers = groups[group].subscribers.0.iter().sum::<u32>();
+    groups[group].revenue.0.iter().sum::<f64>() / f64::from(subscribers.max(1))
+}
+
 /// Formats the cost per lead and the cost per first bill: `$372 a lead, $410 a first bill`.
-fn describe_lead_costs(spell: &AdWindow) -> String {
+fn describe_lead_costs(spell: &AdResults) -> String {
     let dollars = |value: f64| if value < 100.0 { dollars_and_cents(value) } else { format_money(value) };
     let lead = match spell.cost_per_lead() {
         Some(each) => format!("{} a lead", dollars(each)),

@@ -19,6 +19,9 @@ const MIN_SUBSCRIPTIONS_FOR_MARGIN: u32 = 10;
 /// Assumed largest ratio of the cancellations on the last day to the mean daily cancellations of the week.
 /// Usage of the last day includes customers who cancelled on that day, but revenue does not.
 const MAX_LAST_DAY_RATIO: f64 = 3.0;
+/// Mean usage of the days of a week as a share of the usage of its last day, because less is used at weekends
+/// (`docs/mechanics/day.md`).
+const MEAN_DAY_SHARE: f64 = 0.936;
 
 /// Reports a problem if cash is expected to last less than eight weeks.
 pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
@@ -41,8 +44,9 @@ pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<Action
     Some(ActionItem {
         problem: Problem::Runway,
         text: format!(
-            "Cash is expected to last {}. In the next four weeks, income should be {} a week and costs {}.",
+            "Cash is expected to last {}. In the next {}, income should be {} a week and costs {}.",
             pluralize(weeks as u32, "week"),
+            pluralize(seen.expected_days().div_ceil(7), "week"),
             format_money(flows.income),
             format_money(out)
         ),
@@ -141,15 +145,19 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
         let a_month = units as f64 * DAYS_PER_MONTH;
         let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
         let cost = a_month * now.unit_cost;
-        if subscriptions < MIN_SUBSCRIPTIONS_FOR_MARGIN || cost * remaining_share <= monthly {
+        if subscriptions < MIN_SUBSCRIPTIONS_FOR_MARGIN || cost * remaining_share * MEAN_DAY_SHARE <= monthly
+        {
             return None;
         }
         let (proposal, place) = propose_cheaper_setting(situation, plan, now, a_month, revenue)?;
         Some(ActionItem {
             problem: Problem::Margin,
             text: format!(
-                "Plan {plan} loses money. Revenue from {} is {} a month, and compute costs {} a month at the last day's usage.",
-                pluralize(seats as u32, "seat"),
+                "Plan {plan} loses money. Revenue from {} that could use it on the last day is {} a month, and compute costs {} a month at that day's usage.",
+                match f64::from(subscriptions) == seats {
+                    true => pluralize(subscriptions, "subscription"),
+                    false => pluralize(seats as u32, "seat"),
+                },
                 format_money(monthly),
                 format_money(cost)
             ),

@@ -87,7 +87,7 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         .collect();
     ActionItem {
         problem: Problem::NoPrice,
-        text: "No plan has a price. No one can subscribe.".to_owned(),
+        text: "No plan has a price. A plan without a price is free, so no one pays.".to_owned(),
         proposal: Some(format!(
             "Mean monthly budgets: {}. The form proposes half of each estimate.",
             texts.join(", ")
@@ -336,7 +336,7 @@ impl<'a> GroupOffers<'a> {
         let study =
             terms.study_level(estimates.level.max(terms.targets.0)).filter(|study| study.cost <= at_risk)?;
         let text = format!(
-            "Required quality rises as competitors improve, and the estimate is {} old. A level {} study updates the estimate for {} in {}.",
+            "The estimate is {} old, and required quality can have risen since then. A level {} study updates the estimate for {} in {}.",
             pluralize(day - estimates.as_of, "day"),
             study.level,
             format_money(study.cost),
@@ -499,7 +499,7 @@ fn propose_better_quality(
     let text = match cost > at_risk {
         true => {
             format!(
-                "{reached} The cost exceeds the {} lost in four weeks, but the effect lasts.",
+                "{reached} The cost exceeds the {} a month that four weeks of such leads would pay at the lowest price, but the effect lasts.",
                 format_money(at_risk)
             )
         }

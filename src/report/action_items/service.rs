@@ -32,21 +32,18 @@ pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<Acti
     if situation.observation.changes.iter().any(|change| change.setting == SettingId::CapacityTier) {
         return None;
     }
-    // The time is computed from the rounded growth that the sentence shows.
+    // The week is computed from the rounded growth that the sentence shows.
     let growth = (PeakProjection::from_weeks(situation.weeks)?.growth * 1_000.0).round() / 1_000.0;
     if growth <= 1.0 {
         return None;
     }
     let weeks = libm::log(now.units / busiest) / libm::log(growth);
     let next = tiers.iter().find(|tier| tier.tier == now.tier + 1)?;
-    let full = match (weeks * 7.0).ceil() {
-        days if days < 7.0 => pluralize(days.max(1.0) as u32, "day"),
-        _ => format!("{weeks:.1} weeks"),
-    };
+    let when = if weeks <= 1.0 { "of next week" } else { "of the week after next" };
     (weeks < CAPACITY_HORIZON_WEEKS).then(|| ActionItem {
         problem: Problem::Capacity,
         text: format!(
-            "The busiest day of the week used {} units, {} of the {} units of capacity tier {}, and {} more than the busiest day of the week before. At that growth, the tier is full in {full}.",
+            "The busiest day of the week used {} units, {} of the {} units of capacity tier {}, and {} more than the busiest day of the week before. At that growth, the busiest day {when} exceeds the tier.",
             format_whole(busiest),
             percent(busiest / now.units, 0),
             format_whole(now.units),
@@ -63,16 +60,16 @@ pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<Acti
 fn diagnose_overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: &CapacityTier) -> ActionItem {
     let busiest = week.busiest_day as f64;
     let tiers = &situation.terms.capacities;
-    let set_tier =
+    let tier_target =
         |tier: &CapacityTier| ActionTarget::Call(ToolId::SetCapacityTier, json!({ "tier": tier.tier }));
     let (proposal, target) = match (tiers.iter().find(|tier| tier.units >= busiest), tiers.last()) {
-        (Some(enough), _) => (describe_tier_cost(enough, now), set_tier(enough)),
+        (Some(enough), _) => (describe_tier_cost(enough, now), tier_target(enough)),
         (None, Some(largest)) if largest.tier > now.tier => {
             let text = format!(
                 "{} It is the largest tier. Only lower quotas or fewer subscribers reduce the rest of the overload.",
                 describe_tier_cost(largest, now)
             );
-            (text, set_tier(largest))
+            (text, tier_target(largest))
         }
         (None, _) => (
             format!(
@@ -183,7 +180,7 @@ pub(super) fn diagnose_backlog(situation: &DiagnosisContext<'_>) -> Option<Actio
             format_whole(base + per_dollar * operations)
         ),
         proposal: Some(format!(
-            "{} a day resolve about {}: the {} new issues a day without a backlog, and the backlog in {}.",
+            "{} a day resolve about {}: the {} new issues a day that are expected when no one waits, and the backlog in {}.",
             format_money(dollars),
             format_whole(solved),
             format_whole(inflow),

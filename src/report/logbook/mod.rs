@@ -255,10 +255,10 @@ fn week_record(session: &Session, span: &WeekSpan, at: usize) -> WeekRecord {
         .flat_map(|week_decisions| week_decisions.changes.iter().map(describe_change))
         .collect();
     decisions.extend(decided.iter().flat_map(|week_decisions| week_decisions.purchases.iter().cloned()));
-    let cash = session.cash_by_day();
     let own_rationale = span.rationale.as_deref().filter(|_| !span.filed_at_limit);
-    let scored =
-        |filed: &SubmittedForecast| ScoredForecast::new(span.decision_day, &filed.to_forecast(), cash);
+    let scored = |filed: &SubmittedForecast| {
+        ScoredForecast::new(span.decision_day, &filed.to_forecast(), session.weeks())
+    };
     WeekRecord {
         week: novamind_session::week_of_day(span.day),
         decision_day: span.decision_day,

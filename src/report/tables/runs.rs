@@ -152,7 +152,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "weeks_filed_at_limit", "count", "weeks filed automatically at a time limit; words of their rationales are not counted, because the player did not write them" => run.weeks.iter().filter(|week| week.filed_at_limit).count();
         "acting_calls", "count", "accepted calls that changed the run; excludes read-only calls" => run.measures.tools.calls;
         "acting_calls_per_week", "per week", "accepted calls that changed the run, per simulated week" => rounded(run.measures.tools.per_week);
-        "tools_used", "count", "number of different tools in accepted calls that changed the run" => run.measures.tools.tools.len();
+        "tools_used", "count", "number of different tools used in accepted calls that changed the run" => run.measures.tools.tools.len();
         "tool_evenness", "share", "evenness of tool use in accepted calls that changed the run: entropy of the tools' shares divided by \
          its maximum; empty if fewer than two tools were used" => run.measures.tools.evenness;
         "tools", "tool=count", "accepted calls by tool, including read-only calls" => format_tool_counts(&run.total);

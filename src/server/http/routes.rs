@@ -35,7 +35,7 @@ pub(super) struct RouteState {
 /// The id of the served run, and the notification that stops the server.
 #[derive(Clone)]
 pub struct ServedRun {
-    /// Id of the served run.
+    /// ID of the served run.
     pub run: String,
     /// Notified when a request to stop the server has arrived.
     pub stop: Arc<Notify>,

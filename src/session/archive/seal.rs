@@ -21,7 +21,7 @@ pub struct Seal {
     pub program: String,
     /// Time of the last line of the trajectory, RFC 3339.
     pub created: String,
-    /// Id of the run.
+    /// ID of the run.
     pub run: String,
     /// Number of the last line of the trajectory.
     pub last_seq: u64,

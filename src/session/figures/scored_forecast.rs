@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::journal::JournalEntry;
 use novamind_base::formatting::percent;
+use novamind_record::figures::WeekFigures;
 use novamind_tools::Forecast;
 
 /// A submitted forecast of cash, with the outcome if the forecast is due.
@@ -42,11 +43,12 @@ impl IntervalPosition {
 }
 
 impl ScoredForecast {
-    /// Creates a scored forecast that was submitted on `day`. `cash_by_day` is the cash at the end of each day,
-    /// starting with day 0.
-    pub fn new(day: u32, forecast: &Forecast, cash_by_day: &[f64]) -> ScoredForecast {
+    /// Creates a scored forecast that was submitted on `day`. The outcome is the cash at the end of the week that ends
+    /// on the due day, before purchases that follow on the same day.
+    pub fn new(day: u32, forecast: &Forecast, weeks: &[WeekFigures]) -> ScoredForecast {
         let scored = ScoredForecast { forecast: *forecast, day, outcome: None };
-        ScoredForecast { outcome: cash_by_day.get(scored.due_day() as usize).copied(), ..scored }
+        let due = weeks.binary_search_by_key(&scored.due_day(), |week| week.day).ok();
+        ScoredForecast { outcome: due.map(|at| weeks[at].cash), ..scored }
     }
 
     /// Returns the day on which the forecast is due.
@@ -77,7 +79,7 @@ impl ScoredForecast {
         self.outcome.map(|outcome| (self.forecast.point - outcome) / error_scale(outcome))
     }
 
-    /// Describes the forecast error, for example `0.2% low`, or `exact` if the rounded error is 0. Returns `None`
+    /// Describes the forecast error, for example `0.2% low`, or `<0.1%` if the rounded error is 0. Returns `None`
     /// before the due day. Errors of 1,000 % or more are shown as `>999%`.
     pub fn describe_error(&self) -> Option<String> {
         let error = self.relative_error()?;
@@ -86,7 +88,7 @@ impl ScoredForecast {
             _ => ">999%".to_owned(),
         };
         Some(match error {
-            _ if shown == percent(0.0, 1) => "exact".to_owned(),
+            _ if shown == percent(0.0, 1) => "<0.1%".to_owned(),
             error if error < 0.0 => format!("{shown} low"),
             _ => format!("{shown} high"),
         })
@@ -102,13 +104,12 @@ fn error_scale(outcome: f64) -> f64 {
     outcome.abs().max(1.0)
 }
 
-/// Returns all submitted forecasts in order, with their outcomes. `cash_by_day` is the cash at the end of each day,
-/// starting with day 0.
-pub fn submitted_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ScoredForecast> {
+/// Returns all submitted forecasts in order, with their outcomes.
+pub fn submitted_forecasts(journal: &[JournalEntry], weeks: &[WeekFigures]) -> Vec<ScoredForecast> {
     let mut all = Vec::new();
     for entry in journal {
         let JournalEntry::Advance { day, forecasts, .. } = entry else { continue };
-        all.extend(forecasts.iter().map(|forecast| ScoredForecast::new(*day, forecast, cash_by_day)));
+        all.extend(forecasts.iter().map(|forecast| ScoredForecast::new(*day, forecast, weeks)));
     }
     all
 }
@@ -169,13 +170,13 @@ mod tests {
     }
 
     #[test]
-    fn describe_error_returns_low_high_or_exact() {
+    fn describe_error_returns_low_high_or_less_than_a_tenth() {
         let texts = [10.0, 4.0, 5.001, 5.0, 4.999, 0.0, 0.2]
             .map(|outcome| forecast_with_outcome(outcome).describe_error());
         let descriptions = texts.each_ref().map(|text| text.as_deref().unwrap_or_default());
         assert_eq!(
             descriptions,
-            ["50.0% low", "25.0% high", "exact", "exact", "exact", "500.0% high", "480.0% high"]
+            ["50.0% low", "25.0% high", "<0.1%", "<0.1%", "<0.1%", "500.0% high", "480.0% high"]
         );
         let far = Forecast { point: -50.0, ..forecast_with_outcome(1.0).forecast };
         let far = ScoredForecast { forecast: far, ..forecast_with_outcome(1.0) };
@@ -203,10 +204,11 @@ mod tests {
     }
 
     #[test]
-    fn outcome_is_cash_on_the_due_day() {
-        let cash: Vec<f64> = (0..20).map(f64::from).collect();
-        let one = ScoredForecast::new(7, &forecast_with_outcome(0.0).forecast, &cash);
-        assert_eq!((one.due_day(), one.outcome), (14, Some(14.0)));
-        assert_eq!(ScoredForecast::new(14, &one.forecast, &cash).outcome, None);
+    fn outcome_is_the_cash_at_the_end_of_the_due_week() {
+        let week = |day: u32| WeekFigures { day, cash: f64::from(10 * day), ..WeekFigures::default() };
+        let weeks = [week(7), week(14)];
+        let one = ScoredForecast::new(7, &forecast_with_outcome(0.0).forecast, &weeks);
+        assert_eq!((one.due_day(), one.outcome), (14, Some(140.0)));
+        assert_eq!(ScoredForecast::new(14, &one.forecast, &weeks).outcome, None);
     }
 }

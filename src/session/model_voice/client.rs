@@ -21,8 +21,8 @@ pub(crate) struct ModelVoice {
 
 impl ModelVoice {
     pub(crate) fn start_week(&mut self) {
-        if let Some(speaker) = &mut self.client {
-            speaker.time_left = Duration::from_secs(u64::from(speaker.settings.seconds_a_week));
+        if let Some(client) = &mut self.client {
+            client.time_left = Duration::from_secs(u64::from(client.settings.seconds_a_week));
         }
     }
 

@@ -21,7 +21,7 @@ pub struct WeekRequest<'a> {
     pub predictions: &'a Value,
     /// Day on which the caller expects the run to be; null to skip the check.
     pub expected_day: &'a Value,
-    /// Id of the request; null if the request has no id.
+    /// ID of the request; null if the request has no id.
     pub id: &'a Value,
 }
 

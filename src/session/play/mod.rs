@@ -148,8 +148,8 @@ impl Session {
         session
     }
 
-    pub(crate) fn set_model_client(&mut self, speaker: Option<ModelClient>) {
-        self.voice = ModelVoice { client: speaker, ..ModelVoice::default() };
+    pub(crate) fn set_model_client(&mut self, client: Option<ModelClient>) {
+        self.voice = ModelVoice { client: client, ..ModelVoice::default() };
     }
 
     /// Returns a view of the company that contains only visible information.

@@ -210,7 +210,7 @@ impl Session {
         self.finish_call(settings);
     }
 
-    /// Completes an applied command, whether live or replayed. `settings` contains the settings after the call, if the
+    /// Completes an applied call, whether live or replayed. `settings` contains the settings after the call, if the
     /// call changed a setting.
     fn finish_call(&mut self, settings: Option<Value>) {
         if let Some(last) = self.history.cash_by_day.last_mut() {

@@ -74,9 +74,9 @@ impl Session {
         }
         let known = self.known_groups();
         let prompt = self.scoring_prompt(at, &known)?;
-        let speaker = self.voice.client.as_mut()?;
+        let client = self.voice.client.as_mut()?;
         let ModelReply { answer, took_ms } =
-            speaker.request(&prompt, |answer| scoring::parse_response(answer, &known));
+            client.request(&prompt, |answer| scoring::parse_response(answer, &known));
         let post = self.simulation.world.market.social.own.get(at)?;
         match answer {
             Ok(scores) => Some(JudgedPost {
@@ -118,7 +118,7 @@ impl Session {
 
     /// Requests new texts for the newest posts after a day. If the response is not usable, the posts keep their texts.
     pub(super) fn reword_posts_after(&mut self, day: u32) {
-        let Some(speaker) = self.voice.client.as_mut().filter(|speaker| speaker.settings.words) else {
+        let Some(client) = self.voice.client.as_mut().filter(|client| client.settings.words) else {
             return;
         };
         let feed = &self.simulation.feed.posts;
@@ -130,7 +130,7 @@ impl Session {
         let built_in: Vec<BuiltInPost<'_>> = newest.iter().map(|post| to_built_in_post(post)).collect();
         let prompt = wording::prompt(&built_in);
         let ModelReply { answer, took_ms } =
-            speaker.request(&prompt, |answer| wording::parse_response(answer, &built_in));
+            client.request(&prompt, |answer| wording::parse_response(answer, &built_in));
         match answer {
             Ok(texts) => {
                 let numbers = newest.iter().map(|post| post.post);
@@ -220,8 +220,8 @@ impl Session {
                 format!("--voice names a different model: {}", named.recorded_settings().describe())
             }
             (Some(_), Some(named)) => match ModelClient::new(named) {
-                Ok(speaker) => {
-                    self.voice.client = Some(speaker);
+                Ok(client) => {
+                    self.voice.client = Some(client);
                     return;
                 }
                 Err(problem) => problem,
@@ -235,7 +235,7 @@ impl Session {
 
     /// Returns the settings of the connected language model.
     pub fn model_settings(&self) -> Option<&ModelSettings> {
-        self.voice.client.as_ref().map(|speaker| &speaker.settings)
+        self.voice.client.as_ref().map(|client| &client.settings)
     }
 }
 

@@ -294,10 +294,10 @@ impl Playback {
         }
     }
 
-    /// Returns the cash on a day. For days after the current position, returns the recorded cash, if any.
+    /// Returns the cash at the end of the week that ends on a day. For days after the current position, returns the recorded cash, if any.
     fn cash_on_day(&self, day: u32) -> Option<f64> {
         if day <= self.session.day() {
-            return self.session.cash_by_day().get(day as usize).copied();
+            return self.session.weeks().iter().find(|week| week.day == day).map(|week| week.cash);
         }
         self.boundaries.iter().find(|stop| stop.day == day).map(|stop| stop.cash)
     }

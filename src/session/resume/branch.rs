@@ -96,7 +96,7 @@ fn stage_branch(
         && parent.lesson.is_none()
         && shared.iter().any(|line| matches!(line.record, Record::Override(_)))
     {
-        let message = "the run has changed parameters, so its branches must be debug runs";
+        let message = "parameters of the run were changed, so its branches must be debug runs";
         return Err(Rejection::new("not_in_this_mode", message));
     }
     let manifest = Manifest {

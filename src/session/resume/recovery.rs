@@ -16,7 +16,7 @@ use novamind_record::trajectory::{CHAIN_BROKEN_MESSAGE, Line, RECOVERY_HINT, Tra
 /// The result of a recovery.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecoveredRun {
-    /// Id of the new run.
+    /// ID of the new run.
     pub run: String,
     /// Mode of the new run.
     pub mode: Mode,

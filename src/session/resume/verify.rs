@@ -11,7 +11,7 @@ use novamind_record::error::RunError;
 /// The result of a successful verification.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verification {
-    /// Id of the run.
+    /// ID of the run.
     pub run: String,
     /// Number of checked lines.
     pub lines: usize,

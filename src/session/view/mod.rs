@@ -182,7 +182,7 @@ impl<'a> CompanyView<'a> {
 
     /// Returns the scores of the submitted forecasts, one score per horizon.
     pub fn forecast_scores(&self) -> Vec<ForecastScore> {
-        let filed = submitted_forecasts(&self.history.journal, &self.history.cash_by_day);
+        let filed = submitted_forecasts(&self.history.journal, &self.history.weeks);
         let horizons = self.simulation.params.limits.prediction_horizons_days.iter();
         horizons.map(|horizon| ForecastScore::from_forecasts(*horizon, &filed)).collect()
     }

@@ -21,7 +21,7 @@ use novamind_world::params::{HorizonRule, Interface};
 /// A summary of the company and its run for the player.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Observation {
-    /// Id of the run.
+    /// ID of the run.
     pub run: String,
     /// Mode of the run.
     pub mode: Mode,
@@ -135,9 +135,15 @@ impl Observation {
         self.subscribers + self.companies
     }
 
-    /// Returns the income and the variable costs that are expected for the next four weeks.
+    /// Returns the number of days, at most 28, for which income and costs are expected: the rest of the run if it is
+    /// shorter.
+    pub fn expected_days(&self) -> u32 {
+        self.days_left().min(28)
+    }
+
+    /// Returns the income and the variable costs that are expected for [`Observation::expected_days`], per week.
     pub fn expected_flows(&self) -> ExpectedFlows {
-        self.outlook.expected_flows()
+        self.outlook.expected_flows(self.expected_days())
     }
 
     /// Describes how often ranges of naive forecasts contained the actual cash of companies like this one. Returns

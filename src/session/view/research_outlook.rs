@@ -54,7 +54,7 @@ pub struct ResearchSpread {
 /// An R&D project that will not finish by the last day.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LateProject {
-    /// Id of the project.
+    /// ID of the project.
     pub id: String,
     /// Day on which the project will finish.
     pub due_day: u32,

@@ -425,7 +425,7 @@ fn stored_curve(traits: &Traits, drifted: &Curve, params: &Params) -> Curve {
     }
 }
 
-/// Returns the row of a lead that has not agreed to a price yet.
+/// Returns the initial subscriber row of a lead. All prices are 0 until the lead accepts one.
 fn new_subscriber_row(
     arrivals: &ArrivalContext<'_>,
     n: u32,

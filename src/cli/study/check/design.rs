@@ -34,14 +34,14 @@ fn check_questionnaires(study: &Study, weeks: u32) -> Option<CheckItem> {
     for questionnaire in
         study.questionnaires.iter().filter(|questionnaire| questionnaire.when == Occasion::Weeks)
     {
-        let late: Vec<String> =
+        let weeks_after_end: Vec<String> =
             questionnaire.weeks.iter().filter(|week| **week > weeks).map(u32::to_string).collect();
-        if !late.is_empty() {
-            never |= late.len() == questionnaire.weeks.len();
+        if !weeks_after_end.is_empty() {
+            never |= weeks_after_end.len() == questionnaire.weeks.len();
             words.push(format!(
                 "questions/{}.toml is due after week {}",
                 questionnaire.name,
-                late.join(", ")
+                weeks_after_end.join(", ")
             ));
         }
     }

@@ -18,7 +18,7 @@ use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 
-const MAX_PAGE_WIDTH: u16 = 140;
+const MAX_DIALOG_WIDTH: u16 = 140;
 const MIN_ROWS_FOR_PLAN_LINES: u16 = 12;
 const MIN_ROWS_FOR_LEGEND: u16 = 14;
 const MIN_ROWS_FOR_OMISSIONS: u16 = 9;
@@ -27,7 +27,7 @@ impl CurveDialog {
     pub(super) fn draw_page(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(
             area,
-            area.width.saturating_sub(2).min(MAX_PAGE_WIDTH),
+            area.width.saturating_sub(2).min(MAX_DIALOG_WIDTH),
             area.height.saturating_sub(2),
         );
         canvas.clear(dialog_area, Role::Text);

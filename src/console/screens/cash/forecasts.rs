@@ -61,7 +61,7 @@ impl Pane<Cash> for ForecastsPane {
         let (outlook, inside) = (&cash.forecasts, placement.area);
         if outlook.forecasts.is_empty() {
             let text = format!(
-                "No forecasts yet. You make four before each week ({}).",
+                "No forecasts yet. You make them before each week ({}).",
                 context.hint(Action::NextWeek)
             );
             canvas.draw_text(inside, &text, Role::Dim);
@@ -84,7 +84,7 @@ pub struct ForecastsState {
 
 impl ForecastsState {
     pub fn update(&mut self, company: &DisplayedCompany) {
-        self.forecasts = submitted_forecasts(&company.journal, &company.cash_by_day);
+        self.forecasts = submitted_forecasts(&company.journal, &company.weeks);
         self.horizons = company.forecast_scores.iter().map(|score| score.horizon_days).collect();
         self.rebuild_table();
     }

@@ -121,7 +121,7 @@ fn every_pane_returns_its_selected_figure() {
 #[test]
 fn forecasts_are_scored_once_due() {
     let company = DisplayedCompany::from_session(&played_session(2));
-    let all = submitted_forecasts(&company.journal, &company.cash_by_day);
+    let all = submitted_forecasts(&company.journal, &company.weeks);
     assert_eq!((all.len(), all.iter().filter(|one| one.outcome.is_some()).count()), (8, 2));
 }
 

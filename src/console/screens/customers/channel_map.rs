@@ -46,7 +46,7 @@ impl Pane<Customers> for ChannelMapPane {
         let open = context.keys.label(Action::Open).unwrap_or_default();
         PaneBorder {
             title: "Leads per $1,000".to_owned(),
-            note: "measured over 28 days · █ best of the group".to_owned(),
+            note: format!("measured over 28 days · █ best of at least {MIN_CHANNEL_LEADS} leads"),
             keys: format!("{open} set_targeted_ad_spend"),
             ..PaneBorder::default()
         }

@@ -9,7 +9,7 @@ use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::{dollars_and_cents, dollars, grouped_number};
-use novamind_report::lead_costs::{AdWindow, LeadCost};
+use novamind_report::lead_costs::{AdResults, LeadCost};
 use novamind_session::identifiers::{Channel, Group};
 use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
@@ -87,7 +87,7 @@ pub fn cost_row(pair: &LeadCost) -> Vec<TableCell> {
         Some(value) => TableCell::from_number(value, dollars_and_cents(value)),
         None => TableCell::from_text("–").with_role(Role::Dim),
     };
-    let before = |figure: fn(&AdWindow) -> Option<f64>| each(pair.cheapest.as_ref().and_then(figure));
+    let before = |figure: fn(&AdResults) -> Option<f64>| each(pair.cheapest.as_ref().and_then(figure));
     let now = each(pair.recent.cost_per_lead());
     vec![
         TableCell::from_text(pair.channel.id()),
@@ -95,9 +95,9 @@ pub fn cost_row(pair: &LeadCost) -> Vec<TableCell> {
         TableCell::from_number(f64::from(pair.recent.leads), grouped_number(f64::from(pair.recent.leads), 0)),
         TableCell::from_number(pair.recent.spend, dollars(pair.recent.spend)),
         if pair.cost_rise().is_some() { now.with_role(Role::Bad) } else { now },
-        before(AdWindow::cost_per_lead),
+        before(AdResults::cost_per_lead),
         each(pair.recent.cost_per_bill()),
-        before(AdWindow::cost_per_bill),
+        before(AdResults::cost_per_bill),
     ]
 }
 

@@ -171,7 +171,7 @@ impl JournalWeek<'_> {
 impl WeekSubmission<'_> {
     fn summary(&self, company: &DisplayedCompany) -> String {
         let one = |forecast: &Forecast| {
-            let filed = ScoredForecast::new(self.day, forecast, &company.cash_by_day);
+            let filed = ScoredForecast::new(self.day, forecast, &company.weeks);
             let coverage = match filed.outcome {
                 Some(_) if filed.is_covered() => " inside",
                 Some(_) => " OUTSIDE",
@@ -187,7 +187,7 @@ impl WeekSubmission<'_> {
     fn full_description(&self, company: &DisplayedCompany) -> String {
         let head = format!("{:>8} {:>14} {:>14} {:>14}   {}", "", "low", "point", "high", "outcome");
         let one = |forecast: &Forecast| {
-            let filed = ScoredForecast::new(self.day, forecast, &company.cash_by_day);
+            let filed = ScoredForecast::new(self.day, forecast, &company.weeks);
             let outcome = match filed.outcome {
                 Some(cash) => {
                     format!("{} {}", dollars(cash), if filed.is_covered() { "inside" } else { "OUTSIDE" })

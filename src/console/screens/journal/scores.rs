@@ -15,7 +15,7 @@ use novamind_worker::company::DisplayedCompany;
 
 /// Returns the due forecasts with a horizon, the newest first.
 pub fn due_forecasts(company: &DisplayedCompany, horizon: u32) -> Vec<ScoredForecast> {
-    let mut all = submitted_forecasts(&company.journal, &company.cash_by_day);
+    let mut all = submitted_forecasts(&company.journal, &company.weeks);
     all.retain(|filed| filed.forecast.horizon_days == horizon && filed.outcome.is_some());
     all.reverse();
     all

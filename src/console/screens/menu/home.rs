@@ -36,7 +36,7 @@ impl StartMenu {
             return choices;
         }
         let count = self.runs().len();
-        if let Some(run) = self.latest() {
+        if let Some(run) = self.latest_unfinished_run() {
             choices.push((HomeEntry::Continue, "Continue", run_summary(run)));
         }
         let words = match self.tour_run() {

@@ -181,7 +181,7 @@ impl StartMenu {
         }
     }
 
-    fn latest(&self) -> Option<&RunSummary> {
+    fn latest_unfinished_run(&self) -> Option<&RunSummary> {
         self.runs().iter().find(|run| run.ended.is_none() && run.problem.is_none())
     }
 
@@ -231,7 +231,9 @@ impl StartMenu {
                 vec![Action::Agree, Action::Decline]
             }
             _ if self.question.is_some() => vec![Action::Confirm, Action::Cancel],
-            MenuPage::Home if self.latest().is_none() => vec![Action::Open, Action::NewRun, Action::Quit],
+            MenuPage::Home if self.latest_unfinished_run().is_none() => {
+                vec![Action::Open, Action::NewRun, Action::Quit]
+            }
             MenuPage::Home => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],
             MenuPage::NewRun if self.form.is_typing() => vec![Action::Commit, Action::Discard],
             MenuPage::PathForm => vec![Action::Commit, Action::Discard],
@@ -319,7 +321,7 @@ impl StartMenu {
     }
 
     fn open_latest(&self) -> Vec<Effect> {
-        match self.latest() {
+        match self.latest_unfinished_run() {
             Some(run) => vec![Effect::Request(Request::Open(run.id.clone(), Access::Write))],
             None => vec![Effect::ShowError("No unfinished run. Start one with n.".to_owned())],
         }

@@ -66,7 +66,14 @@ impl PriceCurve {
                 let measured = company.fit(explorer.group).map(|fit| fit.measured);
                 let conversion = describe_conversion_briefly(&outcome, measured.as_ref());
                 let draft = if form.sheet.is_changed() { " at the drafted prices" } else { "" };
-                vec![format!("{}{draft}: {conversion}. {}", explorer.group, describe_omissions(explorer))]
+                let plans = drafted_plans(explorer, form);
+                let is_sold = |plan: &PlanPoint| plan.list_price > 0.0 && plan.quota > 0.0;
+                let unsold = match plans.iter().any(is_sold) {
+                    true => "",
+                    false => " No plan has both a price and a quota.",
+                };
+                let omissions = describe_omissions(explorer);
+                vec![format!("{}{draft}: {conversion}.{unsold} {omissions}", explorer.group)]
             }
             Some(Err(refusal)) => vec![refusal.message.clone()],
             None => Vec::new(),
@@ -79,10 +86,8 @@ impl PriceCurve {
         if form.spec.id != ToolId::SetPrices || area.height < MIN_CHART_ROWS + 3 {
             return 0;
         }
-        let head = format!(
-            "participation curve of {}, the group with the most leads · line: half accept · shaded: 10 to 90 %",
-            explorer.group
-        );
+        let head =
+            format!("participation curve of {} · line: half accept · shaded: 10 to 90 %", explorer.group);
         let head = wrap(&head, area.width as usize);
         for (row, line) in row_rects(area).zip(&head) {
             canvas.draw_text(row, line, Role::Header);

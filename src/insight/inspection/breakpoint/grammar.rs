@@ -23,7 +23,7 @@ struct Token<'a> {
     column: usize,
 }
 
-/// Reads the tokens of a condition in order. `#` starts a comment.
+/// A cursor over the tokens of a condition. `#` starts a comment.
 pub(crate) struct TokenReader<'a> {
     tokens: Vec<Token<'a>>,
     at: usize,

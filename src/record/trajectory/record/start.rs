@@ -23,7 +23,7 @@ pub struct Start {
     /// Version number of the mechanics.
     #[serde(default = "first_mechanics")]
     pub mechanics: u32,
-    /// Id of the run.
+    /// ID of the run.
     pub run: String,
     /// Seed of all random draws.
     pub seed: u64,
@@ -81,7 +81,7 @@ pub struct Start {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parent {
-    /// Id of the parent run.
+    /// ID of the parent run.
     pub run: String,
     /// Number of the last copied line.
     pub seq: u64,

@@ -16,8 +16,6 @@ pub use growth_stage::GrowthStage;
 use self::cash_path::CashPath;
 use super::week::Forecasts;
 
-/// Days of the period over which expected income and costs are averaged.
-const EXPECTED_FLOW_DAYS: usize = 28;
 /// Last day of the runway, counted from today. Ranges were not measured for longer horizons.
 pub const MAX_RUNWAY_DAYS: u32 = 182;
 
@@ -40,7 +38,7 @@ pub struct CommittedCosts {
     pub advertising: f64,
 }
 
-/// Expected flows of the next four weeks, dollars per week.
+/// Expected flows of the next weeks, dollars per week.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ExpectedFlows {
     /// Payments and ad revenue.
@@ -96,10 +94,10 @@ impl Outlook {
         error_intervals::error_scale(self.stage, &self.path, days)
     }
 
-    /// Returns the flows that are expected for the next four weeks.
-    pub fn expected_flows(&self) -> ExpectedFlows {
-        let weeks = EXPECTED_FLOW_DAYS as f64 / 7.0;
-        let (income, variable) = self.path.flows(EXPECTED_FLOW_DAYS as u32);
+    /// Returns the mean flows per week that are expected for a number of days.
+    pub fn expected_flows(&self, days: u32) -> ExpectedFlows {
+        let weeks = f64::from(days.max(1)) / 7.0;
+        let (income, variable) = self.path.flows(days);
         ExpectedFlows { income: income / weeks, variable: variable / weeks }
     }
 

@@ -169,7 +169,7 @@ fn fit_lines(
     lines
 }
 
-/// Compares a plan with the needs of the group: `quality 0.1200 short 0.0610 · $12 below budget · quota 2.00k enough`.
+/// Compares a plan with the needs of the group: `quality 0.120: 0.061 short · price $12: below budget · quota 2.00k: enough`.
 fn describe_plan_fit(fit: &Fit, plan: Plan) -> String {
     let plan_fit = &fit.plans[plan];
     if plan_fit.list_price <= 0.0 {
@@ -177,7 +177,7 @@ fn describe_plan_fit(fit: &Fit, plan: Plan) -> String {
     }
     let discounted = if plan_fit.lead_price < plan_fit.list_price { " for leads" } else { "" };
     format!(
-        "quality {} {} · {}{discounted} {} · quota {} {}",
+        "quality {}: {} · price {}{discounted}: {} · quota {}: {}",
         format_quality(plan_fit.quality),
         fit_verdict(fit, plan, FitCriterion::Quality),
         price_to_cents(plan_fit.lead_price),
@@ -191,9 +191,9 @@ fn describe_plan_fit(fit: &Fit, plan: Plan) -> String {
 fn fit_verdict(fit: &Fit, plan: Plan, concern: FitCriterion) -> String {
     if let Some(missing) = fit.certain_gap(plan, concern) {
         return match concern {
-            FitCriterion::Price => format!("over {}", price_to_cents(missing)),
-            FitCriterion::Quality => format!("short {}", format_quality(missing)),
-            FitCriterion::Quota => format!("short {}", compact_number(missing.ceil())),
+            FitCriterion::Price => format!("{} over", price_to_cents(missing)),
+            FitCriterion::Quality => format!("{} short", format_quality(missing)),
+            FitCriterion::Quota => format!("{} short", compact_number(missing.ceil())),
         };
     }
     let verdict = match fit.position(plan, concern) {

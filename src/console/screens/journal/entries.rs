@@ -107,7 +107,7 @@ impl JournalWeek<'_> {
             let why = line(filed.day, format!("  why  {}", words.join(" ")), Role::Text);
             lines.push(JournalLine { term: "rationale", ..why });
             if !filed.forecasts.is_empty() {
-                let journal_line = line(filed.day, format!("  filed {}", filed.summary(company)), Role::Dim);
+                let journal_line = line(filed.day, format!("  forecasts{}", filed.summary(company)), Role::Dim);
                 let sql = format!("SELECT * FROM predictions WHERE submit_day = {}", filed.day);
                 lines.push(JournalLine { term: "forecast", sql: Some(sql), ..journal_line });
             }
@@ -169,6 +169,12 @@ impl JournalWeek<'_> {
 }
 
 impl WeekSubmission<'_> {
+    /// Returns the forecasts that are due within the run. The others are not asked for.
+    fn forecasts_in_run(&self, company: &DisplayedCompany) -> impl Iterator<Item = &Forecast> + use<'_> {
+        let days = company.observation.last_day.saturating_sub(self.day);
+        self.forecasts.iter().filter(move |forecast| forecast.horizon_days <= days)
+    }
+
     fn summary(&self, company: &DisplayedCompany) -> String {
         let one = |forecast: &Forecast| {
             let filed = ScoredForecast::new(self.day, forecast, &company.weeks);
@@ -179,9 +185,9 @@ impl WeekSubmission<'_> {
             };
             format!("{} wk {}{coverage}", forecast.horizon_days / 7, short_dollars(forecast.point))
         };
-        let all: Vec<String> = self.forecasts.iter().map(one).collect();
-        let naively = describe_naive_share(self.filled_naively).map_or(String::new(), |naively| format!("{naively}: "));
-        format!("{naively}{}", all.join(" · "))
+        let all: Vec<String> = self.forecasts_in_run(company).map(one).collect();
+        let naively = describe_naive_share(self.filled_naively).map_or(String::new(), |naively| format!(" filled {naively}"));
+        format!("{naively}: {}", all.join(" · "))
     }
 
     fn full_description(&self, company: &DisplayedCompany) -> String {
@@ -202,7 +208,7 @@ impl WeekSubmission<'_> {
                 dollars(forecast.upper)
             )
         };
-        let lines: Vec<String> = std::iter::once(head).chain(self.forecasts.iter().map(one)).collect();
+        let lines: Vec<String> = std::iter::once(head).chain(self.forecasts_in_run(company).map(one)).collect();
         let naively =
             describe_naive_share(self.filled_naively).map_or(String::new(), |naively| format!(", filled {naively}"));
         format!("Forecasts of cash{naively}:\n{}", lines.join("\n"))

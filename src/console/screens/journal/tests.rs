@@ -57,7 +57,7 @@ fn newest_week_is_first() {
     assert_eq!(texts[2], "  undo: set_prices A 13 → 12");
     assert!(texts[3].starts_with("week 1 · day 7 · cash $"), "{texts:#?}");
     assert_eq!(texts[4], "  why  Cheaper than the others. See who comes.");
-    assert!(texts[5].starts_with("  filed ") && texts[5].contains(": 1 wk $"), "{texts:#?}");
+    assert!(texts[5].starts_with("  forecasts") && texts[5].contains(": 1 wk $"), "{texts:#?}");
     assert_eq!(texts[6], "  set_prices A 12 B 25 C 55");
 }
 

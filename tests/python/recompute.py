@@ -287,8 +287,9 @@ class Run:
                     "covered": "",
                     "width": "",
                 }
-                if due <= self.day:
-                    came = self.cash[due]
+                # Purchases on the due day that follow the end of the week do not count.
+                came = next((it.closing["figures"]["cash"] for it in self.weeks if it.closing["day"] == due), None)
+                if came is not None:
                     size = max(abs(came), 1)
                     row["outcome"] = came
                     row["error"] = (forecast["point"] - came) / size

@@ -24,7 +24,7 @@ pub(super) fn columns<'a>() -> Vec<Column<FiledForecastRow<'a>>> {
         "lower", "dollars", "lower end of the 95 % interval" => row.scored.forecast.lower;
         "upper", "dollars", "upper end of the 95 % interval" => row.scored.forecast.upper;
         "filled_naively", "0 or 1", "1: the naive forecast was used, in whole or in part" => row.is_naive;
-        "outcome", "dollars", "actual cash on the predicted day; this and the following columns are empty if the run did not reach that day"
+        "outcome", "dollars", "cash at the end of the week that ends on the predicted day, before later purchases on that day; this and the following columns are empty if the run did not reach that day"
             => row.scored.outcome;
         "error", "share", "(point - outcome) / max(|outcome|, 1): positive if the forecast was too high" => row.scored.relative_error();
         "absolute_error", "share", "absolute value of error" => row.scored.relative_error().map(f64::abs);

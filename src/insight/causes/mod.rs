@@ -10,6 +10,7 @@
 mod attribution;
 mod cause;
 mod continued;
+mod due_contributions;
 mod inputs;
 mod question;
 mod shapley;

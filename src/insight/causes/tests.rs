@@ -77,7 +77,8 @@ fn all_quantities() -> Vec<WeekQuantity> {
 }
 
 fn is_continuing(part: &CauseContribution) -> bool {
-    matches!(part.cause, Cause::Continued(_) | Cause::EarlierMarket)
+    use Cause::{Continued, EarlierMarket, EnterpriseBillsDue, IssuesAtRenewal, RenewalsDue};
+    matches!(part.cause, Continued(_) | EarlierMarket | RenewalsDue | IssuesAtRenewal | EnterpriseBillsDue)
 }
 
 /// Asserts that the contributions and the residual add up to the change.
@@ -487,6 +488,38 @@ fn residual_of_new_subscribers_is_small_without_changed_settings() {
         for why in explain_unchanged_weeks(seed, company_quantity(WeekFigure::NewSubscribers)) {
             let explained: f64 = why.contributions.iter().map(|part| part.amount.abs()).sum();
             assert!(why.residual.abs() < 0.2 * explained, "seed {seed}: {why:#?}");
+        }
+    }
+}
+
+#[test]
+fn zz_measure() {
+    for seed in [3, 4] {
+        let runs = tempfile::tempdir().expect("a folder");
+        let session = play_weeks(runs.path(), Mode::Debug, seed, None);
+        let mut causes = open_causes(&session);
+        for week in 4..=8 {
+            for figure in [
+                WeekFigure::Cancellations,
+                WeekFigure::Subscribers,
+                WeekFigure::Payments,
+                WeekFigure::CashChange,
+                WeekFigure::Churn,
+            ] {
+                let q = company_quantity(figure);
+                let why = causes
+                    .explain(WeekQuestion { quantity: q, week: Some(week) }, &continue_progress)
+                    .expect("an answer")
+                    .expect("x");
+                assert_contributions_add_up(&why);
+                println!(
+                    "seed {seed} week {week} {q}: {} -> {}; residual {}",
+                    why.before, why.after, why.residual
+                );
+                for part in &why.contributions {
+                    println!("      {} {:.4} {:?}", part.cause.name(), part.amount, part.details);
+                }
+            }
         }
     }
 }

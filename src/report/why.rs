@@ -111,10 +111,10 @@ fn describe_detail(detail: &CauseDetail) -> String {
             dollars(*dollars_before),
             dollars(*dollars_now)
         ),
-        CauseDetail::IssuesAtRenewal { issues: [before, now] } => format!(
-            "{} → {} due with an open issue, valued by its age, without the other causes",
-            count(*before),
-            count(*now)
+        CauseDetail::IssuesAtRenewal { shares: [before, now] } => format!(
+            "{} → {} of those due had an open issue, valued by its age, without the other causes",
+            percent(*before, 0),
+            percent(*now, 0)
         ),
         CauseDetail::Occurrences(times, noun) => pluralize(*times as u32, noun),
         CauseDetail::Input(InputDetail { name, old, new, is_share }) => {
@@ -220,8 +220,8 @@ mod tests {
                 "671 → 1,750 due ($8,120 → $21,000), at the mean share paid without the other causes",
             ),
             (
-                CauseDetail::IssuesAtRenewal { issues: [20, 75] },
-                "20 → 75 due with an open issue, valued by its age, without the other causes",
+                CauseDetail::IssuesAtRenewal { shares: [0.2, 0.75] },
+                "20% → 75% of those due had an open issue, valued by its age, without the other causes",
             ),
         ];
         for (detail, words) in cases {

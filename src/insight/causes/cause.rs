@@ -25,6 +25,8 @@ pub enum Cause {
     IssuesAtRenewal,
     /// Number of enterprises whose billing day fell in the week.
     EnterpriseBillsDue,
+    /// Usage of the subscribers, which determines the cost of compute.
+    Usage,
     /// All hidden market inputs, merged into one cause.
     Market,
     /// Moves of competitors.
@@ -58,6 +60,7 @@ impl Cause {
             Cause::RenewalsDue => "renewals due",
             Cause::IssuesAtRenewal => "issues at renewal",
             Cause::EnterpriseBillsDue => "enterprise bills due",
+            Cause::Usage => "compute for usage",
             Cause::Market => "market",
             Cause::Competitors => "competitors",
             Cause::Drift => "drift",
@@ -129,10 +132,10 @@ pub enum CauseDetail {
         /// Number of renewals in the previous week and in the explained week.
         bills: [u32; 2],
     },
-    /// Number of individuals with an open issue before their billing day in each week.
+    /// Share of the individuals due who had an open issue before their billing day.
     IssuesAtRenewal {
-        /// Number of individuals in the previous week and in the explained week.
-        issues: [u32; 2],
+        /// Shares in the previous week and in the explained week, 0 to 1.
+        shares: [f64; 2],
     },
     /// Outcome of the renewals of the explained week without the other causes.
     RenewalsCancelled {

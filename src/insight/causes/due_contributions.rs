@@ -1,9 +1,9 @@
 //! Bills that were due in the two weeks: the part of the residual that they explain.
 //!
-//! Individuals decide only on their billing day, every 30 days, and enterprises pay on a billing day that depends on
-//! the day of their first message. The number of bills that are due in a week therefore follows from signups and
-//! threads of earlier weeks, and no cause of the two weeks changes it. Both weeks are simulated without the listed
-//! causes. In these weeks, the change in an outcome, for example cancellations, has three parts:
+//! Individuals decide only on their billing day, every 30 days. The number of renewals in a week therefore follows from
+//! signups of earlier weeks, and no cause of the two weeks changes it. Enterprises pay on a billing day that depends on
+//! the day on which they opened their first thread. In the two weeks simulated without the listed causes, the change
+//! in an outcome of bills, for example cancellations, has three parts:
 //!
 //! - the change in the number of bills, at the mean outcome of a bill in the two weeks;
 //! - the change in the open issues of the individuals who are due: individuals are counted by the age of their issue, at
@@ -11,13 +11,15 @@
 //! - the change in the outcome of a bill at the same age of the issue, which stays in the residual.
 //!
 //! The parts are computed for each group, so a change in the mix of groups belongs to the number of bills.
+//! Cash and costs also depend on the usage of all subscribers, so compute in these weeks is a contribution as well.
 
 use super::attribution::CauseContribution;
-use super::cause::{Cause, CauseDetail};
+use super::cause::{Cause, CauseDetail, InputDetail};
 use super::continued::TwoWeeks;
 use super::question::WeekQuantity;
 use crate::counterfactual::due_bills::{DueBills, ISSUE_BANDS};
 use novamind_record::figures::{SimulatedWeek, WeekFigure};
+use novamind_world::events::Category;
 use novamind_world::identifiers::Group;
 
 /// Returns the contributions of the due bills to the change between two weeks without the other causes. The list is
@@ -39,14 +41,21 @@ pub(super) fn due_contributions(quantity: WeekQuantity, weeks: &TwoWeeks) -> Vec
         WeekFigure::Payments | WeekFigure::Income | WeekFigure::CashChange => {
             let mut parts = of_payments(Cause::RenewalsDue, weeks, &individuals);
             parts.extend(of_payments(Cause::EnterpriseBillsDue, weeks, &enterprises));
+            if quantity.figure() == WeekFigure::CashChange {
+                parts.push(of_compute(weeks, -1.0));
+            }
             parts
         }
+        WeekFigure::Costs | WeekFigure::RunningCosts => vec![of_compute(weeks, 1.0)],
         _ => Vec::new(),
     }
 }
 
 /// Returns the contributions to cancellations, divided by `denominators`.
 fn of_cancellations(weeks: &TwoWeeks, groups: &[Group], denominators: [f64; 2]) -> Vec<CauseContribution> {
+    if denominators.contains(&0.0) {
+        return Vec::new();
+    }
     let read = |week: usize, due: &DueBills| {
         [due.bills, due.cancelled].map(|count| f64::from(count) / denominators[week])
     };
@@ -78,6 +87,18 @@ fn of_payments(cause: Cause, weeks: &TwoWeeks, groups: &[Group]) -> Vec<CauseCon
     })
 }
 
+/// Returns the contribution of compute: the change in its cost, times `sign`.
+fn of_compute(weeks: &TwoWeeks, sign: f64) -> CauseContribution {
+    let [before, now] = weeks.weeks.each_ref().map(|week| week.category_costs(Category::Compute));
+    let [old, new] = weeks.weeks.each_ref().map(|week| week.figures.usage as f64);
+    let usage = InputDetail { name: "units without the other causes", old, new, is_share: false };
+    CauseContribution {
+        cause: Cause::Usage,
+        amount: sign * (now - before),
+        details: vec![CauseDetail::Input(usage)],
+    }
+}
+
 /// Returns the contribution of the number of bills, and of the open issues of the subscribers who are due. `read`
 /// returns the volume and the outcome of the bills of a week.
 fn contributions(
@@ -104,17 +125,15 @@ fn contributions(
         }
     }
     let mut parts = vec![CauseContribution { cause, amount: number, details: vec![detail] }];
-    let issues = weeks
-        .due_bills
-        .each_ref()
-        .map(|due| groups.iter().flat_map(|group| &due[*group][1..]).map(|due| due.bills).sum());
-    if cause == Cause::RenewalsDue && issues != [0, 0] {
-        let details = vec![CauseDetail::IssuesAtRenewal { issues }];
-        parts.push(CauseContribution {
-            cause: Cause::IssuesAtRenewal,
-            amount: number_and_issues - number,
-            details,
-        });
+    if cause == Cause::RenewalsDue && !bills.contains(&0) {
+        let without_issue = weeks
+            .due_bills
+            .each_ref()
+            .map(|due| groups.iter().map(|group| due[*group][0].bills).sum::<u32>());
+        let shares = [0, 1].map(|week| 1.0 - f64::from(without_issue[week]) / f64::from(bills[week]));
+        let details = vec![CauseDetail::IssuesAtRenewal { shares }];
+        let amount = number_and_issues - number;
+        parts.push(CauseContribution { cause: Cause::IssuesAtRenewal, amount, details });
     }
     parts
 }
@@ -142,14 +161,14 @@ mod tests {
 
     #[test]
     fn volume_effect_uses_the_mean_outcome_of_both_weeks() {
-        assert_eq!(volume_effect([100.0, 200.0], [10.0, 20.0]), 10.0, "the outcome per bill is constant");
-        assert_eq!(volume_effect([100.0, 200.0], [10.0, 40.0]), 15.0);
+        assert_eq!(volume_effect([128.0, 256.0], [16.0, 32.0]), 16.0, "the outcome per bill is constant");
+        assert_eq!(volume_effect([128.0, 256.0], [16.0, 64.0]), 24.0);
         assert_eq!(
             volume_effect([0.0, 200.0], [0.0, 40.0]),
             40.0,
             "the first bills explain the whole change"
         );
-        assert_eq!(volume_effect([200.0, 0.0], [40.0, 0.0]), -40.0);
+        assert_eq!(volume_effect([256.0, 0.0], [64.0, 0.0]), -64.0);
         assert_eq!(volume_effect([50.0, 50.0], [5.0, 9.0]), 0.0, "the same number of bills explains nothing");
         assert_eq!(volume_effect([0.0, 0.0], [0.0, 0.0]), 0.0);
     }

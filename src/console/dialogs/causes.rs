@@ -312,7 +312,8 @@ mod tests {
             part(Cause::RenewalsDue, 94.0, CauseDetail::RenewalsDue { bills: [671, 750] }),
         ];
         let mut dialog = dialog_with_answer(Ok(ChangeExplanation { contributions, ..example_causes() }));
-        let words = |picture: String| picture.split_whitespace().collect::<Vec<_>>().join(" ");
+        let words =
+            |picture: String| picture.replace('┃', " ").split_whitespace().collect::<Vec<_>>().join(" ");
         for (width, height) in [(60, 16), (80, 24), (120, 40), (200, 60)] {
             let first = words(dialog_text(&dialog, &company, width, height));
             assert!(first.contains("compared with a simulation without it on days 64 to 77"), "{first}");

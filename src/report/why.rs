@@ -4,7 +4,7 @@ use super::decision_periods::describe_change;
 use super::formatting::{
     describe_short_week, format_number, format_percentage_points, format_whole, pluralize,
 };
-use novamind_base::formatting::{grouped_number, percent};
+use novamind_base::formatting::{dollars, grouped_number, percent};
 use novamind_insight::{CauseDetail, ChangeExplanation, InputDetail};
 use novamind_record::figures::FigureUnit;
 
@@ -36,14 +36,16 @@ pub fn cause_lines(why: &ChangeExplanation) -> Vec<CauseLine> {
     why.contributions.iter().map(part).chain([line(RESIDUAL_NAME, why.residual, Vec::new())]).collect()
 }
 
-/// Formats the change and its causes as an equation: `cancellations +942 = price +938 · competitors +4 · residual 0`.
+/// Formats the change and its causes as an equation: `cancellations +942 compared with week 19 = price +938 ·
+/// competitors +4 · residual 0`.
 pub fn equation(why: &ChangeExplanation) -> String {
     let parts: Vec<String> =
         cause_lines(why).iter().map(|line| format!("{} {}", line.name, line.amount_text)).collect();
     format!(
-        "{} {} = {}",
+        "{} {} compared with week {} = {}",
         why.quantity.name(),
         format_signed_change(why.quantity.unit(), why.total_change()),
+        why.week - 1,
         parts.join(" · ")
     )
 }
@@ -59,7 +61,7 @@ pub fn heading(why: &ChangeExplanation) -> String {
 /// Formats a value in the unit of a figure.
 pub fn format_figure(unit: FigureUnit, value: f64) -> String {
     match unit {
-        FigureUnit::Dollars => novamind_base::formatting::dollars(value + 0.0),
+        FigureUnit::Dollars => dollars(value + 0.0),
         FigureUnit::Count => format_whole(value),
         FigureUnit::Share => percent(value, 1),
         FigureUnit::PreciseShare => percent(value, 2),
@@ -89,13 +91,41 @@ pub fn format_signed_change(unit: FigureUnit, change: f64) -> String {
 fn describe_detail(detail: &CauseDetail) -> String {
     match detail {
         CauseDetail::Setting(change) => describe_change(change),
-        CauseDetail::Removed { first, last } => format!("removed on days {first} to {last}"),
+        CauseDetail::Removed { first, last } => {
+            format!("compared with a simulation without it on days {first} to {last}")
+        }
+        CauseDetail::RenewalsDue { bills: [before, now] } => format!(
+            "{} → {} due, at the mean cancellation rate without the other causes",
+            count(*before),
+            count(*now)
+        ),
+        CauseDetail::RenewalsCancelled { bills, cancelled } => format!(
+            "{} due, of which {} are cancelled without the other causes",
+            count(*bills),
+            count(*cancelled)
+        ),
+        CauseDetail::BillsDue { bills: [before, now], dollars: [dollars_before, dollars_now] } => format!(
+            "{} → {} due ({} → {}), at the mean share paid without the other causes",
+            count(*before),
+            count(*now),
+            dollars(*dollars_before),
+            dollars(*dollars_now)
+        ),
+        CauseDetail::IssuesAtRenewal { shares: [before, now] } => format!(
+            "{} → {} of those due had an open issue, valued by its age, without the other causes",
+            percent(*before, 0),
+            percent(*now, 0)
+        ),
         CauseDetail::Occurrences(times, noun) => pluralize(*times as u32, noun),
         CauseDetail::Input(InputDetail { name, old, new, is_share }) => {
             let value = |value: f64| if *is_share { percent(value, 1) } else { format_number(value) };
             format!("{name}: {} → {}", value(*old), value(*new))
         }
     }
+}
+
+fn count(number: u32) -> String {
+    format_whole(number.into())
 }
 
 #[cfg(test)]
@@ -141,7 +171,10 @@ mod tests {
             &[(price, 938.0), (Cause::Competitors, 3.5)],
         );
         let equation_text = equation(&change_explanation);
-        assert_eq!(equation_text, "cancellations +942 = price +938 · competitors +3.5 · residual +0.5");
+        assert_eq!(
+            equation_text,
+            "cancellations +942 compared with week 19 = price +938 · competitors +3.5 · residual +0.5"
+        );
         assert_eq!(heading(&change_explanation), "cancellations, week 20: 195 → 1,137");
         let short = ChangeExplanation { days: [7, 3], ..change_explanation };
         assert_eq!(
@@ -152,11 +185,14 @@ mod tests {
             sample_explanation(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
         assert_eq!(
             equation(&explanation),
-            "conversion -1.00 pt = price -1.00 pt · load and outages 0 · residual 0"
+            "conversion -1.00 pt compared with week 19 = price -1.00 pt · load and outages 0 · residual 0"
         );
         let cash_explanation =
             sample_explanation(WeekFigure::CashChange, 100.0, -4_900.4, &[(Cause::Market, -5_000.0)]);
-        assert_eq!(equation(&cash_explanation), "cash change -$5,000 = market -$5,000 · residual 0");
+        assert_eq!(
+            equation(&cash_explanation),
+            "cash change -$5,000 compared with week 19 = market -$5,000 · residual 0"
+        );
     }
 
     #[test]
@@ -167,6 +203,26 @@ mod tests {
             (CauseDetail::Occurrences(1, "call"), "1 call"),
             (input("peak overload", 0.0, 0.131, true), "peak overload: 0.0% → 13.1%"),
             (input("index", 49.0, 50.25, false), "index: 49 → 50.25"),
+            (
+                CauseDetail::Removed { first: 8, last: 21 },
+                "compared with a simulation without it on days 8 to 21",
+            ),
+            (
+                CauseDetail::RenewalsDue { bills: [671, 1750] },
+                "671 → 1,750 due, at the mean cancellation rate without the other causes",
+            ),
+            (
+                CauseDetail::RenewalsCancelled { bills: 1750, cancelled: 80 },
+                "1,750 due, of which 80 are cancelled without the other causes",
+            ),
+            (
+                CauseDetail::BillsDue { bills: [671, 1750], dollars: [8_120.0, 21_000.4] },
+                "671 → 1,750 due ($8,120 → $21,000), at the mean share paid without the other causes",
+            ),
+            (
+                CauseDetail::IssuesAtRenewal { shares: [0.2, 0.75] },
+                "20% → 75% of those due had an open issue, valued by its age, without the other causes",
+            ),
         ];
         for (detail, words) in cases {
             assert_eq!(describe_detail(&detail), words);

@@ -40,7 +40,7 @@ fn causes_open_from_figures_on_screens() {
         ("3", "subscribers of S1, week 10: "),
         ("3 right right right right right", "leads of S1, week 10: "),
         ("right right right", "cancellations of S1, week 10: "),
-        ("right", "churn of S1, week 10: "),
+        ("right", "weekly churn of S1, week 10: "),
         ("3 enter tab", "conversion of S1, week 10: "),
         ("tab tab tab", "leads of S1, week 10: "),
         ("left down", "new subscribers of S1, week 9: "),

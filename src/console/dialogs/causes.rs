@@ -21,6 +21,8 @@ use novamind_worker::question::{OutgoingQuestion, Pending};
 const MAX_DIALOG_WIDTH: u16 = 110;
 /// Minimum number of visible causes below a long text.
 const MIN_LISTED_CAUSES: usize = 4;
+/// Maximum number of lines for the details of the selected cause, if they do not fit in the row of a cause.
+const MAX_DETAIL_LINES: usize = 2;
 
 /// The dialog that shows the causes of a change.
 pub struct CausesDialog {
@@ -93,7 +95,7 @@ impl CausesDialog {
         let [name, amount, bars] = widths;
         let role = |usual| if here { Role::Selection } else { usual };
         let share = if most > 0.0 { cause.amount.abs() / most } else { 0.0 };
-        let left = (width as usize).saturating_sub(name + amount + bars + 5);
+        let left = detail_width(widths, width as usize);
         let mark = if here { "›" } else { " " };
         Line::from(vec![
             canvas.span(
@@ -104,6 +106,11 @@ impl CausesDialog {
             canvas.span(format!(" {}", truncate_to_width(&cause.details.join(" · "), left)), role(Role::Dim)),
         ])
     }
+}
+
+/// Returns the space for the details of a cause in a row of the given width.
+fn detail_width(columns: [usize; 3], row: usize) -> usize {
+    row.saturating_sub(columns.iter().sum::<usize>() + 5)
 }
 
 impl Dialog for CausesDialog {
@@ -166,9 +173,24 @@ impl Dialog for CausesDialog {
         };
         let text = wrap(&text, inner);
         let causes = self.causes().map(cause_lines).unwrap_or_default();
+        let longest = |of: fn(&CauseLine) -> usize| causes.iter().map(of).max().unwrap_or(0);
+        let bars = if inner >= 90 { 16 } else { 8 };
+        let widths = [
+            longest(|cause_line| cause_line.name.len()),
+            longest(|cause_line| cause_line.amount_text.len()),
+            bars,
+        ];
+        let detail_lines = |cause: &CauseLine| {
+            let detail = cause.details.join(" · ");
+            let fits = detail.chars().count() <= detail_width(widths, inner);
+            if fits { Vec::new() } else { wrap(&detail, inner) }
+        };
+        // The same number of lines is reserved for all causes, so the list stays in place when the selection moves.
+        let details = causes.iter().map(|cause| detail_lines(cause).len()).max().unwrap_or(0);
+        let details = details.min(MAX_DETAIL_LINES);
         let room = area.height.saturating_sub(2) as usize;
-        let gap = usize::from(!causes.is_empty() && text.len() + causes.len() < room);
-        let height = (text.len() + gap + causes.len() + 2) as u16;
+        let gap = usize::from(!causes.is_empty() && text.len() + causes.len() + details < room);
+        let height = (text.len() + gap + causes.len() + details + 2) as u16;
         let dialog_area = centered_rect(area, width, height);
         canvas.clear(dialog_area, Role::Text);
         let note = match self.causes() {
@@ -179,19 +201,20 @@ impl Dialog for CausesDialog {
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         // The list of causes scrolls, and the text stays in place.
         let listed = causes.len().min(MIN_LISTED_CAUSES);
-        let shown = text.len().min((inside.height as usize).saturating_sub(listed + gap).max(1));
+        let fixed = listed + gap + details;
+        let shown = text.len().min((inside.height as usize).saturating_sub(fixed).max(1));
         for (row, line) in row_rects(inside).zip(text.iter().take(shown)) {
             canvas.draw_text(row, line, role);
         }
         let used = ((shown + gap) as u16).min(inside.height);
-        let list = Rect { y: inside.y + used, height: inside.height - used, ..inside };
-        let longest = |of: fn(&CauseLine) -> usize| causes.iter().map(of).max().unwrap_or(0);
-        let bars = if inner >= 90 { 16 } else { 8 };
-        let widths = [
-            longest(|cause_line| cause_line.name.len()),
-            longest(|cause_line| cause_line.amount_text.len()),
-            bars,
-        ];
+        let list_height = (inside.height - used).saturating_sub(details as u16);
+        let list = Rect { y: inside.y + used, height: list_height, ..inside };
+        let below = Rect { y: list.bottom(), height: inside.bottom() - list.bottom(), ..inside };
+        if let Some(cause) = causes.get(self.selected) {
+            for (row, line) in row_rects(below).zip(detail_lines(cause)) {
+                canvas.draw_text(row, &line, Role::Dim);
+            }
+        }
         let most = causes.iter().map(|cause| cause.amount.abs()).fold(0.0, f64::max);
         let first = self.selected.saturating_sub((list.height as usize).saturating_sub(1));
         for (row, (at, cause)) in row_rects(list).zip(causes.iter().enumerate().skip(first)) {
@@ -217,7 +240,7 @@ impl Dialog for CausesDialog {
 mod tests {
     use super::*;
     use crate::test_kit::{dialog_action, dialog_text, new_company};
-    use novamind_insight::{CauseContribution, CauseDetail, InputDetail};
+    use novamind_insight::{CauseContribution, CauseDetail, InputDetail, SuspendedSetting};
     use novamind_tools::ToolId;
 
     fn cancellations() -> WeekQuantity {
@@ -277,6 +300,29 @@ mod tests {
         assert!(matches!(&second.effects[..], [Effect::ShowRows(figure)] if figure.title == "cancellations"));
         dialog_action(&mut dialog, Action::Last, &company);
         assert_eq!(dialog.selected, 3);
+    }
+
+    #[test]
+    fn details_that_do_not_fit_are_shown_for_the_selected_cause() {
+        let company = new_company();
+        let part = |cause, amount, detail| CauseContribution { cause, amount, details: vec![detail] };
+        let continued = Cause::Continued(SuspendedSetting::Operations);
+        let contributions = vec![
+            part(continued, -102.0, CauseDetail::Removed { first: 64, last: 77 }),
+            part(Cause::RenewalsDue, 94.0, CauseDetail::RenewalsDue { bills: [671, 750] }),
+        ];
+        let mut dialog = dialog_with_answer(Ok(ChangeExplanation { contributions, ..example_causes() }));
+        let words =
+            |picture: String| picture.replace('┃', " ").split_whitespace().collect::<Vec<_>>().join(" ");
+        for (width, height) in [(60, 16), (80, 24), (120, 40), (200, 60)] {
+            let first = words(dialog_text(&dialog, &company, width, height));
+            assert!(first.contains("compared with a simulation without it on days 64 to 77"), "{first}");
+            dialog_action(&mut dialog, Action::Down, &company);
+            let second = words(dialog_text(&dialog, &company, width, height));
+            assert!(second.contains("renewals due") && second.contains("671 → 750 due"), "{second}");
+            assert!(second.contains("without the other"), "{second}");
+            dialog_action(&mut dialog, Action::First, &company);
+        }
     }
 
     #[test]

@@ -19,6 +19,14 @@ pub enum Cause {
     Continued(SuspendedSetting),
     /// Market moves in the previous week that affect all days of the explained week.
     EarlierMarket,
+    /// Number of individuals whose billing day fell in the week.
+    RenewalsDue,
+    /// Open issues of the individuals whose billing day fell in the week.
+    IssuesAtRenewal,
+    /// Number of enterprises whose billing day fell in the week.
+    EnterpriseBillsDue,
+    /// Usage of the subscribers, which determines the cost of compute.
+    Usage,
     /// All hidden market inputs, merged into one cause.
     Market,
     /// Moves of competitors.
@@ -49,6 +57,10 @@ impl Cause {
             Cause::EarlierPurchases => "last week's purchases",
             Cause::Continued(setting) => continued_name(setting),
             Cause::EarlierMarket => "market of the week before",
+            Cause::RenewalsDue => "renewals due",
+            Cause::IssuesAtRenewal => "issues at renewal",
+            Cause::EnterpriseBillsDue => "enterprise bills due",
+            Cause::Usage => "compute for usage",
             Cause::Market => "market",
             Cause::Competitors => "competitors",
             Cause::Drift => "drift",
@@ -114,6 +126,30 @@ pub enum CauseDetail {
         first: u32,
         /// Last day without the cause.
         last: u32,
+    },
+    /// Number of individuals whose billing day fell in each week.
+    RenewalsDue {
+        /// Number of renewals in the previous week and in the explained week.
+        bills: [u32; 2],
+    },
+    /// Share of the individuals due who had an open issue before their billing day.
+    IssuesAtRenewal {
+        /// Shares in the previous week and in the explained week, 0 to 1.
+        shares: [f64; 2],
+    },
+    /// Outcome of the renewals of the explained week without the other causes.
+    RenewalsCancelled {
+        /// Number of renewals that were due.
+        bills: u32,
+        /// Number of individuals who cancelled.
+        cancelled: u32,
+    },
+    /// Bills that were due in each week.
+    BillsDue {
+        /// Number of bills in the previous week and in the explained week.
+        bills: [u32; 2],
+        /// Monthly prices of these subscribers in the previous week and in the explained week, dollars.
+        dollars: [f64; 2],
     },
     /// Number of occurrences and the noun for one occurrence, for example 3 and `call`.
     Occurrences(usize, &'static str),

@@ -7,20 +7,27 @@
 use super::CauseProgressFn;
 use super::attribution::CauseContribution;
 use super::cause::{Cause, CauseDetail};
+use super::due_contributions::due_contributions;
 use super::inputs::WeekPair;
 use super::question::WeekQuantity;
 use super::shapley::shapley_values;
 use super::week_resimulation::{WeekResimulation, last_simulated_week};
 use crate::counterfactual::branch::{BranchOutcome, simulate_branch};
+use crate::counterfactual::due_bills::DueByIssue;
 use crate::counterfactual::edits::Edits;
 use crate::counterfactual::memory_snapshot::MemorySnapshot;
 use crate::counterfactual::suspended_setting::SuspendedSetting;
 use novamind_record::figures::{SimulatedWeek, WeekFigure};
 use novamind_world::customers::drift::is_drift_day;
 use novamind_world::fixed_inputs::FixedInputs;
+use novamind_world::identifiers::ByGroup;
 
-/// The figures of both weeks in a re-simulation, or `None` if a week ended early.
-pub(super) type TwoWeeks = Option<[SimulatedWeek; 2]>;
+/// The results of both weeks in a re-simulation.
+pub(super) struct TwoWeeks {
+    pub weeks: [SimulatedWeek; 2],
+    /// Bills that fell due in each week, by group.
+    pub due_bills: [ByGroup<DueByIssue>; 2],
+}
 
 /// Returns the causes that continue from the previous week: active settings, and the market if it moved in that week.
 pub(super) fn continued_causes(start: &MemorySnapshot, eve: &MemorySnapshot) -> Vec<Cause> {
@@ -35,8 +42,8 @@ pub(super) fn continued_causes(start: &MemorySnapshot, eve: &MemorySnapshot) -> 
 }
 
 impl WeekResimulation {
-    /// Returns the contributions of the continuing causes to the change in a figure. The causes that differ between the
-    /// weeks do not explain these contributions. Returns `None` if `progress` stopped the simulations.
+    /// Returns the contributions of the continuing causes and of the due bills to the change in a figure. The causes
+    /// that differ between the weeks do not explain these contributions. Returns `None` if `progress` stopped the simulations.
     pub(super) fn continued_contributions(
         &mut self,
         quantity: WeekQuantity,
@@ -50,7 +57,8 @@ impl WeekResimulation {
                 || self.continued[*at] != Cause::Continued(SuspendedSetting::Advertising)
         };
         let candidates = (0..self.continued.len()).filter(is_valued).collect();
-        let change = |acting: u32| change_without_purchases(quantity, &self.continued_weeks[acting as usize]);
+        let change =
+            |acting: u32| change_without_purchases(quantity, self.continued_weeks[acting as usize].as_ref());
         let all = (1u32 << self.continued.len()) - 1;
         let valued = causes_with_values(candidates, all, change);
         let amounts = shapley_values(valued.len(), |set| change(included_causes(&valued, all, set)));
@@ -58,7 +66,11 @@ impl WeekResimulation {
             let cause = self.continued[*at];
             CauseContribution { cause, amount, details: vec![self.removed_days(cause)] }
         };
-        Some(valued.iter().zip(amounts).map(contribution).collect())
+        // The residual is the change without all causes that have a value.
+        let due = self.continued_weeks[included_causes(&valued, all, 0) as usize]
+            .as_ref()
+            .map_or(Vec::new(), |weeks| due_contributions(quantity, weeks));
+        Some(valued.iter().zip(amounts).map(contribution).chain(due).collect())
     }
 
     /// Returns the days on which the re-simulations remove a continuing cause.
@@ -87,7 +99,7 @@ impl WeekResimulation {
         &self,
         acting: u32,
         go_on: &mut dyn FnMut(u32) -> std::ops::ControlFlow<()>,
-    ) -> Option<TwoWeeks> {
+    ) -> Option<Option<TwoWeeks>> {
         let removed: Vec<Cause> = self
             .continued
             .iter()
@@ -122,11 +134,13 @@ impl WeekResimulation {
             outcome.lead_overflow.is_none() && outcome.final_state.world.day == day
         };
         let are_complete = is_complete(&before, eve) && is_complete(&after, end);
-        Some(are_complete.then(|| {
-            [
+        let due = |outcome: &BranchOutcome| outcome.due_bills.last().copied().unwrap_or_default();
+        Some(are_complete.then(|| TwoWeeks {
+            weeks: [
                 last_simulated_week(&self.start_before, &before),
                 last_simulated_week(&before.final_state, &after),
-            ]
+            ],
+            due_bills: [due(&before), due(&after)],
         }))
     }
 }
@@ -151,8 +165,8 @@ fn included_causes(candidates: &[usize], all: u32, set: u32) -> u32 {
 }
 
 /// Returns the change in a figure, apart from one-time purchases of the previous week; NaN if the figure has no value.
-fn change_without_purchases(quantity: WeekQuantity, weeks: &TwoWeeks) -> f64 {
-    weeks.as_ref().map_or(f64::NAN, |[before, after]| {
+fn change_without_purchases(quantity: WeekQuantity, weeks: Option<&TwoWeeks>) -> f64 {
+    weeks.map_or(f64::NAN, |TwoWeeks { weeks: [before, after], .. }| {
         quantity.value_in(after) - quantity.value_in(&before.without_purchases())
     })
 }

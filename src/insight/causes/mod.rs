@@ -4,12 +4,15 @@
 //! world inputs that the company does not control. The contribution of a cause is its Shapley value. World inputs are
 //! evaluated without the player's changes. The player's changes are evaluated with the recorded world inputs. The
 //! contribution of a single change is therefore exactly the difference from a branch without the change. Settings and
-//! market moves that continue from the previous week are causes as well (`continued.rs`). The residual has two sources:
-//! different customers have their billing day in the explained week, and every day has new random draws.
+//! market moves that continue from the previous week are causes as well (`continued.rs`). So are the bills that were due
+//! in the two weeks without these causes, because different customers have their billing day in each week
+//! (`due_contributions.rs`). In the residual, the same bills have different outcomes: customers differ, and every day has
+//! new random draws.
 
 mod attribution;
 mod cause;
 mod continued;
+mod due_contributions;
 mod inputs;
 mod question;
 mod shapley;

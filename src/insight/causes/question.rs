@@ -45,7 +45,7 @@ impl WeekQuantity {
         self.group
     }
 
-    /// Returns the display name of the figure with its group: `churn of S1`, `cash change`.
+    /// Returns the display name of the figure with its group: `weekly churn of S1`, `cash change`.
     pub fn name(&self) -> String {
         match self.group {
             Some(group) => format!("{} of {group}", self.figure.name()),
@@ -164,6 +164,7 @@ mod tests {
             ("new subscribers 12", "new_subscribers", Some(12)),
             ("New_Subscribers  3", "new_subscribers", Some(3)),
             ("churn(S1) 44", "churn(S1)", Some(44)),
+            ("weekly churn(S1)", "churn(S1)", None),
             ("new-subscribers ( s2 )7 ", "new_subscribers(S2)", Some(7)),
             ("reputation(E1)", "reputation(E1)", None),
             ("r&d 5", "R&D", Some(5)),

@@ -7,7 +7,9 @@ use serde_json::json;
 
 use super::*;
 use crate::SuspendedSetting;
-use crate::counterfactual::test_kit::{WEEKS_BEFORE_CHANGE, play_weeks};
+use crate::counterfactual::test_kit::{
+    WEEKS_BEFORE_CHANGE, begin_company, change_setting, play_week, play_weeks, play_weeks_with_offers,
+};
 use novamind_record::figures::{GroupFigures, SimulatedWeek, WeekFigure, WeekGroupFigures};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
@@ -76,8 +78,13 @@ fn all_quantities() -> Vec<WeekQuantity> {
     of_company.chain(of_groups).collect()
 }
 
+/// Returns whether a cause also exists if nothing differs from the previous week.
 fn is_continuing(part: &CauseContribution) -> bool {
-    matches!(part.cause, Cause::Continued(_) | Cause::EarlierMarket)
+    use Cause::{Continued, EarlierMarket, EnterpriseBillsDue, IssuesAtRenewal, RenewalsDue, Usage};
+    matches!(
+        part.cause,
+        Continued(_) | EarlierMarket | RenewalsDue | IssuesAtRenewal | EnterpriseBillsDue | Usage
+    )
 }
 
 /// Asserts that the contributions and the residual add up to the change.
@@ -364,12 +371,13 @@ fn sandbox_run_groups_market_inputs_and_baseline_run_rejects_analysis() {
     let runs = tempfile::tempdir().expect("a folder");
     let change = || Some(("set_prices", json!({"A": 24})));
     let mut sandbox = play_weeks(runs.path(), Mode::Sandbox, 3, change());
-    let causes =
-        |why: &ChangeExplanation| why.contributions.iter().map(|part| part.cause).collect::<Vec<_>>();
+    let causes = |why: &ChangeExplanation| {
+        let of_week = why.contributions.iter().filter(|part| !is_continuing(part));
+        of_week.map(|part| part.cause).collect::<Vec<_>>()
+    };
     let seen = causes(&explain(&sandbox, company_quantity(WeekFigure::Cancellations)));
     let allowed = [Cause::Calls(ToolId::SetPrices), Cause::Market, Cause::Service];
-    let of_week = seen.iter().filter(|cause| !matches!(cause, Cause::Continued(_) | Cause::EarlierMarket));
-    assert!(of_week.clone().all(|cause| allowed.contains(cause)) && of_week.count() == 3, "{seen:?}");
+    assert!(seen.iter().all(|cause| allowed.contains(cause)) && seen.len() == 3, "{seen:?}");
     sandbox.abandon().expect("it ends");
     let ended = causes(&explain(&sandbox, company_quantity(WeekFigure::Cancellations)));
     assert!(ended.contains(&Cause::Economy) && !ended.contains(&Cause::Market), "{ended:?}");
@@ -487,6 +495,121 @@ fn residual_of_new_subscribers_is_small_without_changed_settings() {
         for why in explain_unchanged_weeks(seed, company_quantity(WeekFigure::NewSubscribers)) {
             let explained: f64 = why.contributions.iter().map(|part| part.amount.abs()).sum();
             assert!(why.residual.abs() < 0.2 * explained, "seed {seed}: {why:#?}");
+        }
+    }
+}
+
+/// Plays steady prices, with a wave of signups in week 2 that renews in weeks 6 and 7.
+fn play_signup_wave(runs: &std::path::Path, seed: u64) -> Session {
+    let mut session = begin_company(runs, Mode::Debug, seed);
+    change_setting(&mut session, "set_capacity_tier", &json!({"capacity_tier": 3}));
+    change_setting(&mut session, "set_daily_spend", &json!({"operations": 5000, "development": 2000}));
+    for week in 1..=8 {
+        let budget = if week == 2 { 30_000 } else { 3000 };
+        let ads = json!({"search_ads": {"S1": budget, "S2": budget}, "linkedin": {"S3": budget}});
+        change_setting(&mut session, "set_targeted_ad_spend", &ads);
+        play_week(&mut session);
+    }
+    session
+}
+
+/// Plays a company that offers every enterprise the price that it asks.
+fn play_enterprise_deals(runs: &std::path::Path, seed: u64) -> Session {
+    let mut session = begin_company(runs, Mode::Debug, seed);
+    for (tool, arguments) in [
+        ("set_model_tiers", json!({"A": 5, "B": 5, "C": 5})),
+        ("set_capacity_tier", json!({"capacity_tier": 4})),
+        ("set_daily_spend", json!({"operations": 8000, "development": 20_000})),
+        ("set_targeted_dev_spend", json!({"E1": 10_000, "E2": 10_000, "E3": 10_000})),
+        ("set_targeted_ad_spend", json!({"linkedin": {"E1": 4000, "E2": 4000, "E3": 4000}})),
+    ] {
+        change_setting(&mut session, tool, &arguments);
+    }
+    for _ in 1..=10 {
+        let waiting = session.company().observe().waiting;
+        let offer = |thread: &novamind_session::WaitingThread| {
+            json!([thread.customer, [["C", thread.asked.unwrap_or(20.0)]]])
+        };
+        let deals: Vec<_> = waiting.iter().map(offer).collect();
+        if !deals.is_empty() {
+            change_setting(&mut session, "send_enterprise_deal", &json!({ "deals": deals }));
+        }
+        play_week(&mut session);
+    }
+    session
+}
+
+fn explain_week(causes: &mut CauseAnalysis, figure: WeekFigure, week: u32) -> ChangeExplanation {
+    let question = WeekQuestion { quantity: company_quantity(figure), week: Some(week) };
+    let why = causes.explain(question, &continue_progress).expect("an answer").expect("it is not stopped");
+    assert_contributions_add_up(&why);
+    why
+}
+
+fn detail_of(why: &ChangeExplanation, cause: Cause) -> CauseDetail {
+    why.contributions.iter().find(|part| part.cause == cause).expect("a cause").details[0]
+}
+
+#[test]
+fn first_renewals_explain_cancellations_and_payments() {
+    for seed in [3, 4, 5, 6] {
+        let runs = tempfile::tempdir().expect("a folder");
+        let session = play_weeks(runs.path(), Mode::Debug, seed, None);
+        let mut causes = open_causes(&session);
+        for figure in [WeekFigure::Cancellations, WeekFigure::Churn] {
+            let why = explain_week(&mut causes, figure, 5);
+            assert!(why.total_change() > 0.0 && why.residual.abs() < 1e-9, "seed {seed}: {why:#?}");
+            let CauseDetail::RenewalsDue { bills: [0, due] } = detail_of(&why, Cause::RenewalsDue) else {
+                panic!("{why:#?}")
+            };
+            // Individuals who signed up on days 1 to 5 renew on days 31 to 35.
+            assert!((1..=session.weeks()[0].new_individual_subscribers).contains(&due), "{due}");
+        }
+        for figure in [WeekFigure::Payments, WeekFigure::CashChange] {
+            let why = explain_week(&mut causes, figure, 5);
+            assert!(why.residual.abs() < 0.05 * why.total_change().abs(), "seed {seed}: {why:#?}");
+        }
+        let subscribers = explain_week(&mut causes, WeekFigure::Subscribers, 5);
+        let CauseDetail::RenewalsCancelled { bills, cancelled } = detail_of(&subscribers, Cause::RenewalsDue)
+        else {
+            panic!("{subscribers:#?}")
+        };
+        assert!(bills > cancelled && cancelled > 0);
+        assert!(subscribers.residual.abs() < 0.1 * subscribers.total_change(), "{subscribers:#?}");
+    }
+}
+
+#[test]
+fn renewals_of_a_signup_wave_explain_cancellations_and_payments() {
+    for seed in [3, 4, 5] {
+        let runs = tempfile::tempdir().expect("a folder");
+        let session = play_signup_wave(runs.path(), seed);
+        let mut causes = open_causes(&session);
+        for week in [6, 7] {
+            let why = explain_week(&mut causes, WeekFigure::Cancellations, week);
+            let amounts: f64 = why.contributions.iter().map(|part| part.amount.abs()).sum();
+            assert!(why.residual.abs() < 0.2 * amounts, "seed {seed}: {why:#?}");
+            for figure in [WeekFigure::Payments, WeekFigure::CashChange] {
+                let why = explain_week(&mut causes, figure, week);
+                assert_eq!(why.contributions[0].cause, Cause::RenewalsDue, "seed {seed}: {why:#?}");
+                assert!(why.residual.abs() < 0.15 * why.total_change().abs(), "seed {seed}: {why:#?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn enterprise_bills_explain_payments() {
+    for seed in [3, 4] {
+        let runs = tempfile::tempdir().expect("a folder");
+        let session = play_enterprise_deals(runs.path(), seed);
+        let mut causes = open_causes(&session);
+        for week in [6, 7, 8] {
+            let why = explain_week(&mut causes, WeekFigure::Payments, week);
+            assert_eq!(why.contributions[0].cause, Cause::EnterpriseBillsDue, "seed {seed}: {why:#?}");
+            assert!(why.total_change() != 0.0 && why.residual.abs() < 0.01, "seed {seed}: {why:#?}");
+            let cash = explain_week(&mut causes, WeekFigure::CashChange, week);
+            assert!(cash.residual.abs() < 0.05 * cash.total_change().abs(), "seed {seed}: {cash:#?}");
         }
     }
 }

@@ -64,7 +64,7 @@ pub(super) struct WeekResimulation {
     /// Causes that continue from the previous week.
     pub(super) continued: Vec<Cause>,
     /// Both weeks with each subset of the continuing causes, by the bit mask of the subset; empty until simulated.
-    pub(super) continued_weeks: Vec<TwoWeeks>,
+    pub(super) continued_weeks: Vec<Option<TwoWeeks>>,
 }
 
 impl WeekResimulation {

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use serde_json::{Value, json};
 
 use super::customer_renumbering::{RenumberedCall, add_branch_number_note};
+use super::due_bills::{DueByIssue, DueToday};
 use super::edits::{AddedCall, AddedSetting, Edits, Redraw, UsageBasedCapacity};
 use super::memory_snapshot::MemorySnapshot;
 use super::recorded_steps::{RecordedCall, RecordedDays, RecordedStep, contains_post_replies};
@@ -33,6 +34,8 @@ pub(crate) struct BranchOutcome {
     pub satisfaction: Vec<f64>,
     /// Figures of every group in each completed week.
     pub groups: Vec<ByGroup<GroupFigures>>,
+    /// Bills that fell due in each completed week, by group.
+    pub due_bills: Vec<ByGroup<DueByIssue>>,
     /// Day and hash of each state whose hash is in the recorded steps; empty unless hashes are requested.
     #[cfg_attr(not(test), expect(dead_code, reason = "tests compare states"))]
     pub states: Vec<(u32, StateHash)>,
@@ -123,6 +126,8 @@ struct BranchSimulation<'a> {
     week: WeekFigures,
     /// Figures of each group in the current week.
     group_week: ByGroup<GroupWeek>,
+    /// Bills that fell due in the current week, by group.
+    due_week: ByGroup<DueByIssue>,
     /// Cash at the start of the week.
     cash_before: f64,
     /// Ledger entries of calls since the last simulated day.
@@ -136,6 +141,7 @@ struct BranchSimulation<'a> {
     days: Vec<DayFigures>,
     satisfaction: Vec<f64>,
     groups: Vec<ByGroup<GroupFigures>>,
+    due_bills: Vec<ByGroup<DueByIssue>>,
     states: Vec<(u32, StateHash)>,
     rejected: Vec<RejectedCall>,
     rejected_parameters: Vec<(u32, String, Rejection)>,
@@ -166,6 +172,7 @@ impl<'a> BranchSimulation<'a> {
             projection: RunDatabase::default(),
             week: WeekFigures::default(),
             group_week: ByGroup::default(),
+            due_week: ByGroup::default(),
             call_entries: Vec::new(),
             processes_text,
             has_unprocessed_text: false,
@@ -174,6 +181,7 @@ impl<'a> BranchSimulation<'a> {
             days: Vec::new(),
             satisfaction: Vec::new(),
             groups: Vec::new(),
+            due_bills: Vec::new(),
             states: Vec::new(),
             rejected: Vec::new(),
             rejected_parameters: Vec::new(),
@@ -363,6 +371,7 @@ impl<'a> BranchSimulation<'a> {
         let day_before = self.has_unprocessed_text.then(Vec::new);
         let params = self.simulation.params.clone();
         let settings = self.suspend_settings();
+        let due = DueToday::before_day(&self.simulation.world, &params, &mut self.due_week);
         let figures = self.simulation.simulate_day(
             &self.edits.fixed_inputs,
             self.projection.entry_writer(),
@@ -379,6 +388,7 @@ impl<'a> BranchSimulation<'a> {
         let Simulation { facts, params, world, .. } = &self.simulation;
         self.week.add_simulated_day(&figures, facts, &self.call_entries, params);
         add_day_to_week(&mut self.group_week, &figures, facts, world);
+        due.after_day(world, params, facts);
         self.call_entries.clear();
         self.days.push(figures);
         let days_per_week = params.run.days_per_week;
@@ -404,6 +414,7 @@ impl<'a> BranchSimulation<'a> {
         let (world, counted) = (&self.simulation.world, std::mem::take(&mut self.group_week));
         self.satisfaction.push(mean_satisfaction(world));
         self.groups.push(ByGroup::from_fn(|group| measure_group(group, &counted[group], world)));
+        self.due_bills.push(std::mem::take(&mut self.due_week));
         self.cash_before = cash;
     }
 
@@ -424,6 +435,7 @@ impl<'a> BranchSimulation<'a> {
             days,
             satisfaction,
             groups,
+            due_bills,
             states,
             rejected: refused,
             rejected_parameters: unfit,
@@ -438,6 +450,7 @@ impl<'a> BranchSimulation<'a> {
             days,
             satisfaction,
             groups,
+            due_bills,
             states,
             rejected: refused,
             rejected_parameters: unfit,

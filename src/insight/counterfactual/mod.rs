@@ -8,6 +8,7 @@
 pub(crate) mod analysis_cache;
 pub(crate) mod branch;
 pub(crate) mod customer_renumbering;
+pub(crate) mod due_bills;
 pub(crate) mod edits;
 pub(crate) mod memory_snapshot;
 pub(crate) mod parallel_map;

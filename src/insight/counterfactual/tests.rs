@@ -76,6 +76,21 @@ fn simulate_week_with(edits: Edits) -> BranchOutcome {
 }
 
 #[test]
+fn due_bills_contain_all_cancellations_and_no_first_bills_of_individuals() {
+    let week = simulate_week_with(Edits::default());
+    let bills =
+        || week.due_bills[0].pairs().flat_map(|(group, ages)| ages.iter().map(move |due| (group, due)));
+    let renewals = || bills().filter(|(group, _)| !group.is_enterprise()).map(|(_, due)| due);
+    let cancelled: u32 = renewals().map(|due| due.cancelled).sum();
+    assert!(cancelled > 0 && cancelled == week.weeks[0].cancellations);
+    assert!(
+        renewals().all(|due| due.cancelled <= due.bills && (due.bills > due.cancelled || due.paid == 0.0))
+    );
+    let paid: f64 = bills().map(|(_, due)| due.paid).sum();
+    assert!(paid > 0.0 && paid < week.weeks[0].payments, "{paid} of {}", week.weeks[0].payments);
+}
+
+#[test]
 fn unedited_mechanisms_keep_their_random_draws() {
     let free = simulate_week_with(Edits::default());
     let call = AddedCall { day: 35, tool: ToolId::SetPrices, args: json!({"A": 400, "B": 500, "C": 900}) };

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::*;
 use crate::counterfactual::analysis_cache::AnalysisCache;
 use crate::counterfactual::recorded_steps::RecordedCall;
-use crate::counterfactual::test_kit::play_weeks;
+use crate::counterfactual::test_kit::{play_weeks, play_weeks_with_offers};
 use crate::inspection::inspector::Inspect;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
@@ -497,29 +497,6 @@ fn adoption_replays_single_days() {
     assert_eq!((same.day(), same.state_hash()), (session.day(), session.state_hash()));
 }
 
-/// Plays a run in which every waiting enterprise is answered each week.
-fn run_with_offers(runs: &Path) -> Session {
-    let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
-    let mut session = play_weeks(runs, Mode::Debug, 3, None);
-    for (tool, args) in [
-        ("set_targeted_dev_spend", json!({"E1": 4000, "E2": 5000, "E3": 5000})),
-        ("set_targeted_ad_spend", json!({"social_media": ads, "linkedin": ads})),
-    ] {
-        session.call(tool, &args, Via::Plain).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
-    }
-    for _ in 0..8 {
-        let threads = &session.debug_hidden_state().expect("a debug run").world().enterprise.threads;
-        let open = threads.iter().filter(|thread| thread.is_open()).map(|thread| thread.customer);
-        let deals: Vec<_> = open.map(|customer| json!([customer, [["B", 20], ["C", 50]]])).collect();
-        if !deals.is_empty() {
-            session.call("send_enterprise_deal", &json!({ "deals": deals }), Via::Plain).expect("offers");
-        }
-        let forecasts = session.company().naive_forecasts();
-        session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
-    }
-    session
-}
-
 /// Returns the enterprises that received offers: day, group and number in the group, and the customer numbers.
 fn sent_offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
     let numbers = session.company().customer_numbers();
@@ -544,7 +521,7 @@ fn sent_offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
 #[test]
 fn offers_reach_the_same_enterprises_when_lead_counts_change() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run_with_offers(runs.path());
+    let session = play_weeks_with_offers(runs.path());
     let (made, numbers) = sent_offers(&session);
     assert!(made.len() > 10, "{made:?}");
     for (alternative, all_come) in

@@ -74,7 +74,7 @@ define_figures! {
     Conversion = "conversion", PreciseShare, Some(|week| week.figures.conversion()), Some(WeekGroupFigures::conversion);
     Cancellations = "cancellations", Count,
         Some(|week| week.figures.cancellations.into()), Some(|group| group.figures.left.into());
-    Churn = "churn", PreciseShare, Some(SimulatedWeek::individual_churn), Some(WeekGroupFigures::churn);
+    Churn = "weekly churn", PreciseShare, Some(SimulatedWeek::individual_churn), Some(WeekGroupFigures::churn);
     Upgrades = "upgrades", Count, Some(|week| week.figures.upgrades.into()), None;
     Downgrades = "downgrades", Count, Some(|week| week.figures.downgrades.into()), None;
     Seats = "seats", Count, Some(|week| week.figures.enterprise_seats.into()), None;
@@ -113,6 +113,7 @@ impl WeekFigure {
         let longer = match name {
             "enterprise seats" => Some(WeekFigure::Seats),
             "cash at week's end" | "cash" => Some(WeekFigure::CashChange),
+            "churn" => Some(WeekFigure::Churn),
             _ => None,
         };
         WeekFigure::ALL.iter().copied().find(is_named).or(longer)
@@ -138,7 +139,11 @@ impl WeekFigure {
 
     /// Returns the name of the figure in commands and data, for example `new_subscribers`.
     pub fn id(self) -> String {
-        self.name().replace(' ', "_")
+        match self {
+            // Screens also show 30-day churn, but commands and data have only this figure.
+            WeekFigure::Churn => "churn".to_owned(),
+            _ => self.name().replace(' ', "_"),
+        }
     }
 
     /// Returns whether the figure is hidden until the run ends. Debug runs always show the figure.

@@ -79,7 +79,7 @@ impl RunReport {
             decision_periods: decision_periods(session.company().decisions(), journal, start_cash),
             highlights: highlights(weeks, session.cash_by_day(), &figures.outages, seen.ended),
             measures,
-            bankruptcy: bankruptcy,
+            bankruptcy,
             rules: session.rules(),
             origin: session.folder().and_then(branch_origin),
             database: figures,

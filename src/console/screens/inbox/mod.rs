@@ -323,6 +323,10 @@ fn list_prices(company: &DisplayedCompany) -> [f64; 3] {
 }
 
 impl ScreenState for Inbox {
+    fn selected_group(&self, _: &ScreenContext<'_>) -> Option<Group> {
+        self.selected_thread().and_then(|thread| Group::parse(&thread.group))
+    }
+
     fn open_item_title(&self, _: &ScreenContext<'_>) -> Option<String> {
         match self.focus {
             InboxPane::Outcomes => Some("outcomes".to_owned()),
@@ -465,8 +469,7 @@ impl PaneScreen for Inbox {
             Action::SendOffer => return Some(self.send_offers(context.company)),
             Action::RejectOffer => return Some(self.confirm_rejection(context.company)),
             Action::InboxGroup => {
-                let group = self.selected_thread().and_then(|thread| Group::parse(&thread.group));
-                let effect = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
+                let effect = self.selected_group(context).map(|group| Effect::ShowGroup(ScreenId::Customers, group));
                 return Some(effect.into_iter().collect());
             }
             Action::InboxSql => {

@@ -215,6 +215,10 @@ impl Market {
 }
 
 impl ScreenState for Market {
+    fn selected_group(&self, _: &ScreenContext<'_>) -> Option<Group> {
+        self.group()
+    }
+
     fn screen_escape_depth(&self) -> usize {
         usize::from(self.focus == MarketPane::Report)
     }

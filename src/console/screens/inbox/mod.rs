@@ -168,6 +168,7 @@ impl Inbox {
         self.rows = (0..threads.len()).filter(|at| self.view.includes(threads[*at].state)).collect();
         let row = |at: &usize| thread_row(&threads[*at], self.marked.contains(&threads[*at].number));
         let rows = self.rows.iter().map(row).collect();
+        self.table.set_pinned_columns(thread_list::PINNED_COLUMNS);
         self.table.set_columns_and_rows(columns(self.view), rows);
         let from = here.and_then(|here| shown.iter().position(|number| *number == here)).unwrap_or(0);
         let rows = self.rows.iter().enumerate().map(|(row, at)| (self.threads.threads[*at].number, row));
@@ -401,6 +402,11 @@ impl PaneScreen for Inbox {
 
     fn focused_pane(&self) -> InboxPane {
         self.focus
+    }
+
+    /// If the list is empty, the other panes are empty too.
+    fn enlarged_pane(&self) -> InboxPane {
+        if self.rows.is_empty() && self.rules_form.is_none() { self.left_pane() } else { self.focus }
     }
 
     fn set_focused_pane(&mut self, name: InboxPane) {

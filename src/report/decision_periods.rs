@@ -176,7 +176,8 @@ mod tests {
             change(SettingId::Quota(Plan::A), 0.0, 400_000.0),
             change(SettingId::TargetedDevelopment(e1), 9000.0, 0.0),
         ];
-        let sorted: Vec<f64> = by_amount(&changes).into_iter().map(|change| change.new.max(change.old)).collect();
+        let sorted: Vec<f64> =
+            by_amount(&changes).into_iter().map(|change| change.new.max(change.old)).collect();
         assert_eq!(sorted, [9000.0, 50.0, 4.0, 400_000.0]);
     }
 

@@ -60,7 +60,8 @@ pub fn draw_title(canvas: &mut Canvas<'_>, area: Rect, title: &str, letters: &[u
 
 /// Returns the first grapheme to show so that the last matched letter is visible, with room for an ellipsis at each end.
 fn first_shown_grapheme(graphemes: &[&str], letters: &[u32], width: usize) -> usize {
-    let columns = |range: std::ops::Range<usize>| graphemes[range].iter().map(|letter| letter.width()).sum::<usize>();
+    let columns =
+        |range: std::ops::Range<usize>| graphemes[range].iter().map(|letter| letter.width()).sum::<usize>();
     let last = letters.iter().max().map_or(0, |last| (*last as usize + 1).min(graphemes.len()));
     let after = usize::from(last < graphemes.len());
     if columns(0..graphemes.len()) <= width || columns(0..last) + after <= width {

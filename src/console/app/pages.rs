@@ -27,7 +27,8 @@ impl App {
     /// group.
     pub(super) fn show_curve(&mut self, group: Option<Group>) {
         let default = self.run().and_then(|run| {
-            let context = ScreenContext { company: &run.company, keys: &self.keys, page_rows: self.page_rows };
+            let context =
+                ScreenContext { company: &run.company, keys: &self.keys, page_rows: self.page_rows };
             let known = &run.company.observation.known_groups;
             let selected = run.screens.get(run.screen).selected_group(&context);
             selected.filter(|group| known.contains(group)).or(known.first().copied())
@@ -168,8 +169,10 @@ mod tests {
         for keys in ["3 down ; v", "3 down enter ; v", "7 down ; v"] {
             let mut app = console_with_open_run();
             keys.split(' ').for_each(|key| press_key(&mut app, key));
-            let groups: Vec<_> =
-                take_questions::<CurveQuestion>(&mut app).iter().filter_map(|ask| ask.question::<CurveQuestion>().map(|question| question.0.to_string())).collect();
+            let groups: Vec<_> = take_questions::<CurveQuestion>(&mut app)
+                .iter()
+                .filter_map(|ask| ask.question::<CurveQuestion>().map(|question| question.0.to_string()))
+                .collect();
             assert_eq!(groups.last().map(String::as_str), Some("S2"), "{keys}");
         }
     }

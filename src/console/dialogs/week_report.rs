@@ -162,7 +162,8 @@ impl Dialog for WeekReportDialog {
         let Some(week_report) = &context.company.last_week else { return };
         let width = MAX_PAGE_WIDTH.min(area.width);
         let height = usize::from(area.height.saturating_sub(2));
-        let report_lines = |height| self.report_lines(canvas, week_report, context, width.saturating_sub(4), height);
+        let report_lines =
+            |height| self.report_lines(canvas, week_report, context, width.saturating_sub(4), height);
         let (short, complete) = (report_lines(height), report_lines(usize::MAX));
         self.first_omitted.set(first_omitted_line(&short.0[..short.0.len().min(height)], &complete.0));
         let rows_above = self.scroll.clamped_first_row(complete.0.len().saturating_sub(height));
@@ -255,7 +256,9 @@ impl WeekReportDialog {
                 true => Vec::new(),
                 false => with_heading(canvas, &changes_heading(week_report, starts.len()), moves),
             },
-            news.into_iter().chain(notices_section(canvas, context.company, width, left.min(limit(8)))).collect(),
+            news.into_iter()
+                .chain(notices_section(canvas, context.company, width, left.min(limit(8))))
+                .collect(),
             with_heading(canvas, "Action needed", coming),
         ];
         let (mut lines, mut places) = (Vec::new(), vec![0]);

@@ -470,7 +470,8 @@ impl Table {
         let selected = self.arranged_position();
         let all_pinned = (self.extra_pinned_columns + 1).min(widths.len());
         let used: u16 = widths[..all_pinned].iter().map(|width| width.saturating_add(2)).sum();
-        let needed = widths.get(selected).map_or(0, |selected| used.saturating_add(selected + COLUMN_MARK_WIDTH));
+        let needed =
+            widths.get(selected).map_or(0, |selected| used.saturating_add(selected + COLUMN_MARK_WIDTH));
         let pinned = if needed <= width { all_pinned } else { 1 };
         let mut from = pinned;
         loop {
@@ -486,7 +487,13 @@ impl Table {
 
     /// Returns the pinned columns, and the columns from a position on that fit into a width, as positions in display
     /// order. Columns that do not fit leave space for their number.
-    fn columns_from(&self, pinned: usize, from: usize, widths: &[u16], width: u16) -> Vec<(usize, (u16, u16))> {
+    fn columns_from(
+        &self,
+        pinned: usize,
+        from: usize,
+        widths: &[u16],
+        width: u16,
+    ) -> Vec<(usize, (u16, u16))> {
         let last = self.arranged.len().saturating_sub(1);
         let mut columns = Vec::new();
         let mut x = 0;
@@ -625,7 +632,11 @@ mod tests {
         table.set_pinned_columns(2);
         table.select_column(4);
         assert_eq!(drawn(&table, 24), ["group  cash ←usage", "S1     1.00   4.00"]);
-        assert!(drawn(&table, 19)[0].ends_with("usage"), "the selected column has priority: {:?}", drawn(&table, 19));
+        assert!(
+            drawn(&table, 19)[0].ends_with("usage"),
+            "the selected column has priority: {:?}",
+            drawn(&table, 19)
+        );
     }
 
     #[test]

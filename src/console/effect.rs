@@ -55,7 +55,8 @@ pub enum Effect {
     ShowRows(Figure),
     /// Close all dialogs.
     CloseDialogs,
-    /// Show the participation curve of a group. The default is the first known group.
+    /// Show the participation curve of a group. The default is the group selected on the screen, or the first
+    /// known group.
     ShowCurve(Option<Group>),
     /// Show the opponents page.
     ShowOpponents,

@@ -38,6 +38,18 @@ pub fn describe_change(change: &SettingChange) -> String {
     change.setting.unit().map_or(text.clone(), |unit| format!("{text} {unit}"))
 }
 
+/// Sorts changed settings by the amount of the change in dollars, the largest first. Settings without a unit in dollars
+/// follow in their original order.
+pub fn by_amount(changes: &[SettingChange]) -> Vec<&SettingChange> {
+    let amount = |change: &SettingChange| match change.setting.unit() {
+        Some(unit) if unit.starts_with('$') => (change.new - change.old).abs(),
+        _ => -1.0,
+    };
+    let mut sorted: Vec<&SettingChange> = changes.iter().collect();
+    sorted.sort_by(|left, right| amount(right).total_cmp(&amount(left)));
+    sorted
+}
+
 /// Describes changed settings, with one line for each family of settings: `price: A 0 → 14, B 0 → 49 $/month`.
 pub fn describe_changes(changes: &[SettingChange]) -> Vec<String> {
     let mut families: Vec<(String, Vec<&SettingChange>)> = Vec::new();
@@ -151,6 +163,23 @@ fn describe_actions(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String
 mod tests {
     use super::*;
     use crate::test_kit;
+    use novamind_session::SettingId;
+    use novamind_session::identifiers::{Channel, Group, Plan};
+
+    #[test]
+    fn changes_are_sorted_by_their_amount_of_money() {
+        let change = |setting, old, new| SettingChange { setting, old, new };
+        let [s1, e1] = ["S1", "E1"].map(|id| Group::parse(id).expect("a group"));
+        let changes = [
+            change(SettingId::CapacityTier, 0.0, 4.0),
+            change(SettingId::Advertising(Channel::Linkedin, s1), 0.0, 50.0),
+            change(SettingId::Quota(Plan::A), 0.0, 400_000.0),
+            change(SettingId::TargetedDevelopment(e1), 9000.0, 0.0),
+        ];
+        let sorted: Vec<f64> =
+            by_amount(&changes).into_iter().map(|change| change.new.max(change.old)).collect();
+        assert_eq!(sorted, [9000.0, 50.0, 4.0, 400_000.0]);
+    }
 
     #[test]
     fn weeks_without_decisions_extend_the_previous_period() {

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::decision_periods::describe_change;
+use super::decision_periods::{by_amount, describe_change};
 use super::figure_change::{FigureChange, last_change};
 use super::formatting::{
     category_name, describe_short_week, format_money, format_number, format_percentage_points, format_whole,
@@ -67,7 +67,8 @@ pub struct WeekReport {
     pub cash_components: Vec<(&'static str, f64)>,
     /// Changed figures, starting with the most unusual change.
     pub moved_figures: Vec<MovedFigure>,
-    /// Descriptions of changed settings with old and new values, then of purchases, posts and offers.
+    /// Descriptions of changed settings with old and new values, the largest amounts of money first, then of purchases,
+    /// posts and offers.
     pub decisions: Vec<String>,
     /// Forecasts for the last day of the week, shortest horizon first.
     pub due_forecasts: Vec<ScoredForecast>,
@@ -294,7 +295,8 @@ fn describe_decisions(sources: &WeekReportInput<'_>, days: Range<u32>) -> Vec<St
     let found = sources.decisions.iter().filter(|decided| days.contains(&decided.day));
     found
         .flat_map(|decided| {
-            decided.changes.iter().map(describe_change).chain(decided.purchases.iter().cloned())
+            let changes = by_amount(&decided.changes).into_iter().map(describe_change);
+            changes.chain(decided.purchases.iter().cloned())
         })
         .collect()
 }

@@ -169,7 +169,7 @@ impl<'a> Canvas<'a> {
         }
         let left = path.width() + title.width() + 3;
         if !note.is_empty() && room > left + 4 {
-            let text = format!(" {} ", truncate_to_width(&note, room - left - 2));
+            let text = format!(" {} ", fitting_items(&note, room - left - 2));
             block = block.title(Line::from(self.span(text, Role::Dim)).right_aligned());
         }
         let inside = block.inner(area);
@@ -183,7 +183,7 @@ impl<'a> Canvas<'a> {
             return;
         }
         let row = Rect { x: area.x + 2, y: area.bottom() - 1, width: area.width - 4, height: 1 };
-        let shown = format!(" {} ", fitting_keys(text, row.width.saturating_sub(2) as usize));
+        let shown = format!(" {} ", fitting_items(text, row.width.saturating_sub(2) as usize));
         let width = shown.width() as u16;
         self.draw_text(Rect { width: width.min(row.width), ..row }, &shown, Role::Text);
     }
@@ -263,8 +263,8 @@ fn breadcrumb_prefix(path: &[String], title: &str, room: usize) -> String {
     (0..path.len()).map(words).find(fits).unwrap_or_default()
 }
 
-/// Truncates a list of keys between items, so that no item is cut off. The first item is always kept.
-fn fitting_keys(text: &str, width: usize) -> String {
+/// Truncates a list of keys or notes between items. Only the first item is cut off if it does not fit.
+fn fitting_items(text: &str, width: usize) -> String {
     let mut shown = String::new();
     for key in text.split(" · ") {
         let longer = if shown.is_empty() { key.to_owned() } else { format!("{shown} · {key}") };
@@ -344,9 +344,9 @@ mod tests {
 
     #[test]
     fn pane_keys_are_never_truncated() {
-        assert_eq!(fitting_keys("y yes · esc close · ? help", 17), "y yes · esc close");
-        assert_eq!(fitting_keys("y yes · esc close · ? help", 16), "y yes");
-        assert_eq!(fitting_keys("enter begins it", 8), "enter b…");
+        assert_eq!(fitting_items("y yes · esc close · ? help", 17), "y yes · esc close");
+        assert_eq!(fitting_items("y yes · esc close · ? help", 16), "y yes");
+        assert_eq!(fitting_items("enter begins it", 8), "enter b…");
     }
 
     #[test]

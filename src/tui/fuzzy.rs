@@ -32,14 +32,21 @@ pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> V
     scored.into_iter().map(|(_, at, places)| (at, places)).collect()
 }
 
-/// Draws the title of an entry with highlighted matched letters.
+/// Draws the title of an entry with highlighted matched letters. If the matched letters do not fit, the beginning of the
+/// title is omitted.
 pub fn draw_title(canvas: &mut Canvas<'_>, area: Rect, title: &str, letters: &[u32], roles: [Role; 2]) {
-    canvas.draw_text(area, title, roles[0]);
+    let graphemes: Vec<&str> = title.graphemes(true).collect();
+    let from = first_shown_grapheme(&graphemes, letters, area.width as usize);
+    let shown = match from {
+        0 => title.to_owned(),
+        from => format!("…{}", graphemes[from..].concat()),
+    };
+    canvas.draw_text(area, &shown, roles[0]);
     // A truncated title ends with an ellipsis in the last column.
-    let cut = title.width() > area.width as usize;
+    let cut = shown.width() > area.width as usize;
     let room = area.width.saturating_sub(u16::from(cut));
-    let mut column = 0;
-    for (at, letter) in title.graphemes(true).enumerate() {
+    let mut column = u16::from(from > 0);
+    for (at, letter) in graphemes.iter().enumerate().skip(from) {
         let width = letter.width() as u16;
         if column + width > room {
             break;
@@ -51,9 +58,37 @@ pub fn draw_title(canvas: &mut Canvas<'_>, area: Rect, title: &str, letters: &[u
     }
 }
 
+/// Returns the first grapheme to show so that the last matched letter is visible, with room for an ellipsis at each end.
+fn first_shown_grapheme(graphemes: &[&str], letters: &[u32], width: usize) -> usize {
+    let columns =
+        |range: std::ops::Range<usize>| graphemes[range].iter().map(|letter| letter.width()).sum::<usize>();
+    let last = letters.iter().max().map_or(0, |last| (*last as usize + 1).min(graphemes.len()));
+    let after = usize::from(last < graphemes.len());
+    if columns(0..graphemes.len()) <= width || columns(0..last) + after <= width {
+        return 0;
+    }
+    (0..last).find(|from| 1 + columns(*from..last) + after <= width).unwrap_or(0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn matched_letters_of_a_long_title_are_visible() {
+        let theme = crate::theme::Theme::bundled("mono").expect("a theme");
+        let shown = |typed: &str| {
+            let title = "Cancelled subscribers and their issues";
+            let letters = find(typed, std::iter::once((title, ""))).remove(0).1;
+            let mut buffer = ratatui::buffer::Buffer::empty(Rect::new(0, 0, 24, 1));
+            let area = buffer.area;
+            draw_title(&mut Canvas::new(&mut buffer, &theme), area, title, &letters, [Role::Text, Role::Key]);
+            (0..24).map(|x| buffer[(x, 0)].symbol()).collect::<String>()
+        };
+        assert_eq!(shown("their issues"), "…ribers and their issues");
+        assert_eq!(shown("subscribers"), "Cancelled subscribers a…");
+        assert_eq!(shown("their"), "… subscribers and their…");
+    }
 
     #[test]
     fn title_matches_rank_before_explanation_matches() {

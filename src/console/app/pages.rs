@@ -2,7 +2,7 @@
 
 use super::App;
 use crate::action::Action;
-use crate::context::Figure;
+use crate::context::{Figure, ScreenContext};
 use crate::dialogs::Dialog;
 use crate::dialogs::branches::BranchesPage;
 use crate::dialogs::causes::CausesDialog;
@@ -23,10 +23,17 @@ impl App {
         self.execute_effects(vec![Effect::Ask(ask)]);
     }
 
-    /// Opens the participation curve of a group. The default is the first known group.
+    /// Opens the participation curve of a group. The default is the group selected on the screen, or the first known
+    /// group.
     pub(super) fn show_curve(&mut self, group: Option<Group>) {
-        let known = self.run().and_then(|run| run.company.observation.known_groups.first().copied());
-        if let Some(group) = group.or(known) {
+        let default = self.run().and_then(|run| {
+            let context =
+                ScreenContext { company: &run.company, keys: &self.keys, page_rows: self.page_rows };
+            let known = &run.company.observation.known_groups;
+            let selected = run.screens.get(run.screen).selected_group(&context);
+            selected.filter(|group| known.contains(group)).or(known.first().copied())
+        });
+        if let Some(group) = group.or(default) {
             self.open_page_with_question(CurveDialog::new(group));
         }
     }
@@ -155,6 +162,19 @@ mod tests {
         );
         answer_question::<CurveQuestion>(&mut app, &second[0], rejected_answer("of the second group"));
         assert!(screen_text(&app).contains("of the second group"));
+    }
+
+    #[test]
+    fn curve_page_shows_the_selected_group() {
+        for keys in ["3 down ; v", "3 down enter ; v", "7 down ; v"] {
+            let mut app = console_with_open_run();
+            keys.split(' ').for_each(|key| press_key(&mut app, key));
+            let groups: Vec<_> = take_questions::<CurveQuestion>(&mut app)
+                .iter()
+                .filter_map(|ask| ask.question::<CurveQuestion>().map(|question| question.0.to_string()))
+                .collect();
+            assert_eq!(groups.last().map(String::as_str), Some("S2"), "{keys}");
+        }
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! The weekly report: cash and its components, unusual changes, decisions, news, due forecasts, and what needs
 //! attention.
 
+use std::cell::Cell;
+
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr;
@@ -16,11 +18,13 @@ use novamind_record::figures::WeekFigure;
 use novamind_report::action_items::ActionItem;
 use novamind_report::week::MovedFigure;
 use novamind_report::{WeekReport, figure_label};
+use novamind_session::identifiers::Group;
 use novamind_session::{IntervalPosition, ScoredForecast};
 use novamind_tools::Forecast;
-use novamind_tui::canvas::{Canvas, Click, centered_rect, truncate_to_width};
-use novamind_tui::text::{format_change, join_into_lines, wrap, wrap_sentences};
+use novamind_tui::canvas::{Canvas, Click, centered_rect};
+use novamind_tui::text::{format_change, format_count, join_into_lines, wrap, wrap_sentences};
 use novamind_tui::theme::Role;
+use novamind_tui::widgets::ScrollState;
 use novamind_worker::company::DisplayedCompany;
 
 const MAX_PAGE_WIDTH: u16 = 116;
@@ -37,12 +41,40 @@ pub struct WeekReportDialog {
     remark: Option<String>,
     /// Index of the selected line: 0 is cash, followed by the most unusual changes.
     selected: usize,
+    /// Whether the complete report is shown, which can be longer than the window.
+    is_complete: bool,
+    /// Scroll position of the complete report.
+    scroll: ScrollState,
+    /// First line of the complete report that the short report omits, if it omits a line.
+    first_omitted: Cell<Option<usize>>,
 }
 
 impl WeekReportDialog {
     /// Opens the report, with a remark on how the week was saved.
     pub fn new(remark: Option<String>) -> WeekReportDialog {
-        WeekReportDialog { remark, selected: 0 }
+        WeekReportDialog {
+            remark,
+            selected: 0,
+            is_complete: false,
+            scroll: ScrollState::default(),
+            first_omitted: Cell::default(),
+        }
+    }
+
+    /// Scrolls the complete report. Scrolling up from its first line shows the short report.
+    fn scroll_complete_report(&mut self, action: Action, page: usize) {
+        let before = self.scroll.clone();
+        self.scroll.handle_action(action, page);
+        self.is_complete = action != Action::PageUp || before != self.scroll;
+    }
+
+    /// Shows the complete report from the first line that the short report omits.
+    fn open_complete_report(&mut self) {
+        if let Some(first) = self.first_omitted.get() {
+            self.is_complete = true;
+            self.scroll.handle_action(Action::First, 1);
+            self.scroll.handle_action(Action::PageDown, first);
+        }
     }
 
     fn select(&mut self, to: usize, context: &ScreenContext<'_>) -> DialogResponse {
@@ -63,6 +95,14 @@ impl WeekReportDialog {
 
 type SectionLines<'a> = Vec<Line<'a>>;
 
+/// Returns the index of the first line of the complete report that differs from the short report. Blank lines are
+/// ignored.
+fn first_omitted_line(short: &[Line<'_>], complete: &[Line<'_>]) -> Option<usize> {
+    let mut shown = short.iter().filter(|line| line.width() > 0);
+    let is_omitted = |line: &Line<'_>| line.width() > 0 && shown.next() != Some(line);
+    complete.iter().position(is_omitted)
+}
+
 impl Dialog for WeekReportDialog {
     fn record_name(&self) -> String {
         "week report".to_owned()
@@ -73,7 +113,7 @@ impl Dialog for WeekReportDialog {
     }
 
     fn scopes(&self) -> Vec<Scope> {
-        vec![Scope::Dialog, Scope::Global]
+        vec![Scope::Dialog, Scope::List, Scope::Global]
     }
 
     fn hints(&self) -> Vec<Action> {
@@ -86,7 +126,21 @@ impl Dialog for WeekReportDialog {
 
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
-            Action::Cancel | Action::Report => DialogResponse::close(),
+            Action::Cancel | Action::Close | Action::Report => DialogResponse::close(),
+            Action::PageDown if !self.is_complete => {
+                self.open_complete_report();
+                DialogResponse::stay()
+            }
+            Action::PageUp | Action::PageDown | Action::First | Action::Last if self.is_complete => {
+                self.scroll_complete_report(action, context.page_rows.saturating_sub(1).max(1).into());
+                DialogResponse::stay()
+            }
+            Action::ScrollUp | Action::ScrollDown if self.is_complete => {
+                self.scroll_complete_report(action, 1);
+                DialogResponse::stay()
+            }
+            Action::First => self.select(0, context),
+            Action::Last => self.select(usize::MAX, context),
             Action::NextWeek => DialogResponse::confirm_with(vec![Effect::Execute(action)]),
             Action::ScrollUp => self.select(self.selected.saturating_sub(1), context),
             Action::ScrollDown => self.select(self.selected + 1, context),
@@ -107,23 +161,30 @@ impl Dialog for WeekReportDialog {
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let Some(week_report) = &context.company.last_week else { return };
         let width = MAX_PAGE_WIDTH.min(area.width);
-        let (lines, mut places) = self.report_lines(
-            canvas,
-            week_report,
-            context,
-            width.saturating_sub(4),
-            area.height.saturating_sub(2),
-        );
+        let height = usize::from(area.height.saturating_sub(2));
+        let report_lines =
+            |height| self.report_lines(canvas, week_report, context, width.saturating_sub(4), height);
+        let (short, complete) = (report_lines(height), report_lines(usize::MAX));
+        self.first_omitted.set(first_omitted_line(&short.0[..short.0.len().min(height)], &complete.0));
+        let rows_above = self.scroll.clamped_first_row(complete.0.len().saturating_sub(height));
+        let (lines, mut places) = if self.is_complete { complete } else { short };
         let selectable = places.len();
         // The rows below the last selectable line are reached by selecting them.
         places.extend(places.last().map_or(0, |last| last + 1)..lines.len());
-        canvas.page_rows = places.len().max(1) as u16;
+        let rows = if self.is_complete { height } else { places.len() };
+        canvas.page_rows = rows.max(1) as u16;
         let dialog_area = centered_rect(area, width, lines.len() as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
         let title = format!("Week {} · day {}", week_report.week.day.div_ceil(7), week_report.week.day);
         let inside = canvas.draw_pane_frame(dialog_area, &title, "", true);
         let selected = places.get(self.selected).copied().unwrap_or(0);
-        let from = canvas.scroll_to_row(inside, selected, lines.len());
+        let from = match self.is_complete {
+            true => {
+                canvas.draw_scroll_marks(inside, rows_above, lines.len());
+                rows_above
+            }
+            false => canvas.scroll_to_row(inside, selected, lines.len()),
+        };
         let text = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         canvas.draw_lines(text, &lines[from..]);
         canvas.register_click(dialog_area, Click::Command(Action::Cancel.into()));
@@ -136,7 +197,10 @@ impl Dialog for WeekReportDialog {
                 );
             }
         }
-        let close = context.hint(Action::Cancel);
+        let mut close = context.hint(Action::Cancel);
+        if self.is_complete || self.first_omitted.get().is_some() {
+            close = format!("{close} · {}", context.hint(Action::PageDown));
+        }
         // The change in the first week has no explanation, because there is no previous week.
         let why = match context.company.can_explain_causes() && context.company.weeks.len() > 1 {
             true => format!(" · {}", context.hint(Action::Why)),
@@ -150,30 +214,38 @@ impl Dialog for WeekReportDialog {
 
 impl WeekReportDialog {
     /// Returns the lines and the positions of selectable lines. If the height is small, optional lines are omitted. If
-    /// it is too small for all sections, no line is omitted, because the user must scroll anyway.
+    /// it is too small for all sections, fewer lines are omitted, because the user must scroll anyway. The complete
+    /// report has the height `usize::MAX`.
     fn report_lines<'a>(
         &self,
         canvas: &Canvas<'_>,
         week_report: &WeekReport,
         context: &ScreenContext<'_>,
         width: u16,
-        height: u16,
+        height: usize,
     ) -> (Vec<Line<'a>>, Vec<usize>) {
-        let height = height as usize;
+        let omits_nothing = height == usize::MAX;
+        let limit = |lines: usize| if omits_nothing { usize::MAX } else { lines };
         let scrolls = height < MIN_HEIGHT_WITHOUT_SCROLLING;
         let is_complete = scrolls || height >= 26;
-        let head = self.header_section(canvas, week_report, width, if is_complete { 4 } else { 1 });
+        let head = self.header_section(canvas, week_report, width, limit(if is_complete { 4 } else { 1 }));
         let needs = &context.company.action_items;
         let notices = &context.company.notices;
         let news = news_section(canvas, week_report, width, context);
-        let decided = decisions_section(canvas, week_report, width, if is_complete { 6 } else { 2 });
+        let decided = decisions_section(canvas, week_report, width, limit(if is_complete { 6 } else { 2 }));
         // `fixed` includes two headings and, in tall windows, the four blank lines between the five sections.
         let airy = height >= 24;
         let fixed = head.len() + decided.len() + news.len() + 2 + if airy { 4 } else { 0 };
         let room = if scrolls { MAX_SCROLLED_LINES } else { height.saturating_sub(fixed) };
         let shown_needs = needs.len().min((room / 5).max(1)).max(1);
-        let coming =
-            next_steps_section(canvas, &needs[..shown_needs.min(needs.len())], width, is_complete, context);
+        let rows_per_need = limit(2);
+        let coming = next_steps_section(
+            canvas,
+            &needs[..shown_needs.min(needs.len())],
+            (width, rows_per_need),
+            is_complete,
+            context,
+        );
         let taken = coming.len() + usize::from(!notices.is_empty());
         let (moves, starts) = self.changes_section(canvas, week_report, width, room.saturating_sub(taken));
         let left = room.saturating_sub(coming.len() + moves.len());
@@ -184,7 +256,9 @@ impl WeekReportDialog {
                 true => Vec::new(),
                 false => with_heading(canvas, &changes_heading(week_report, starts.len()), moves),
             },
-            news.into_iter().chain(notices_section(canvas, context.company, width, left.min(8))).collect(),
+            news.into_iter()
+                .chain(notices_section(canvas, context.company, width, left.min(limit(8))))
+                .collect(),
             with_heading(canvas, "Action needed", coming),
         ];
         let (mut lines, mut places) = (Vec::new(), vec![0]);
@@ -396,11 +470,26 @@ fn change_lines<'a>(
         line.push(canvas.span(format!("  {summary}"), Role::Dim));
         return vec![Line::from(line)];
     }
-    let below = truncate_to_width(&summary, (width as usize).saturating_sub(6));
-    vec![Line::from(line), Line::from(canvas.span(format!("      {below}"), Role::Dim))]
+    let below = join_into_lines(&parts, (width as usize).saturating_sub(6)).into_iter();
+    let below = below.map(|text| Line::from(canvas.span(format!("      {text}"), Role::Dim)));
+    std::iter::once(Line::from(line)).chain(below).collect()
 }
 
-/// Lists the counts of new items, with the keys of the screens that show them.
+/// Describes the first contracts of enterprises in the week: `2 enterprises signed (E1 1, E2 1): 653 seats`.
+fn contracts_text(week_report: &WeekReport, company: &DisplayedCompany) -> Option<String> {
+    let groups = company.group_weeks.last()?;
+    let signed: Vec<(Group, u32)> = Group::all()
+        .filter(|group| group.is_enterprise() && groups[*group].signed > 0)
+        .map(|group| (group, groups[group].signed))
+        .collect();
+    let count: u32 = signed.iter().map(|(_, count)| count).sum();
+    let by_group: Vec<String> = signed.iter().map(|(group, count)| format!("{group} {count}")).collect();
+    let seats = format_count(week_report.week.new_enterprise_seats.into(), "seat");
+    let noun = if count == 1 { "enterprise" } else { "enterprises" };
+    (count > 0).then(|| format!("{count} {noun} signed ({}): {seats}", by_group.join(", ")))
+}
+
+/// Lists the contracts and the counts of new items, with the keys of the screens that show them.
 fn news_section<'a>(
     canvas: &Canvas<'_>,
     week_report: &WeekReport,
@@ -421,15 +510,19 @@ fn news_section<'a>(
             None,
         ),
     ];
-    let found: Vec<_> = kinds.into_iter().filter(|(count, ..)| *count > 0).collect();
+    let of_count = |(count, one, more, screen): (u32, &str, &str, _)| {
+        let text = format!("{} {}", grouped_number(f64::from(count), 0), if count == 1 { one } else { more });
+        (count > 0).then_some((text, screen))
+    };
+    let contracts = contracts_text(week_report, context.company).map(|text| (text, Some(ScreenId::Inbox)));
+    let found: Vec<_> = contracts.into_iter().chain(kinds.into_iter().filter_map(of_count)).collect();
     let mut lines = vec![vec![canvas.span("New  ", Role::Header)]];
     let mut used = 5;
-    for (at, (count, one, more, screen)) in found.iter().enumerate() {
+    for (at, (text, screen)) in found.iter().enumerate() {
         let dot = if at > 0 { " · " } else { "" };
-        let text =
-            format!("{dot}{} {}", grouped_number(f64::from(*count), 0), if *count == 1 { one } else { more });
+        let text = format!("{dot}{text}");
         // Consecutive items of one screen share the key of that screen.
-        let last = found.get(at + 1).is_none_or(|next| next.3 != *screen);
+        let last = found.get(at + 1).is_none_or(|next| next.1 != *screen);
         let key = screen
             .filter(|_| last)
             .and_then(|screen| context.keys.label(screen.action()))
@@ -449,41 +542,56 @@ fn news_section<'a>(
     lines.into_iter().map(Line::from).collect()
 }
 
-/// Lists the latest notifications that fit. Repeated notifications are combined with a count.
+/// Lists the latest notifications that fit into `room` rows. Repeated notifications are combined with a count.
 fn notices_section<'a>(
     canvas: &Canvas<'_>,
     company: &DisplayedCompany,
     width: u16,
     room: usize,
 ) -> SectionLines<'a> {
-    let mut distinct_notices: Vec<(u32, String, u32)> = Vec::new();
+    let mut distinct_notices: Vec<(u32, &str, u32)> = Vec::new();
     for (day, text) in company.notices.iter().rev() {
         match distinct_notices.iter().position(|(_, known, _)| known == text) {
             Some(at) => distinct_notices[at].2 += 1,
-            None if distinct_notices.len() < room => distinct_notices.push((*day, text.clone(), 1)),
-            None => {}
+            None => distinct_notices.push((*day, text, 1)),
         }
     }
-    let line = |(day, text, times): (u32, String, u32)| {
-        let times = if times > 1 { format!(" ({times} times)") } else { String::new() };
-        let before = format!("  day {day:<4} ");
-        let left = usize::from(width).saturating_sub(before.len() + times.len());
-        let text = company.company_names.insert_names(&text.split_whitespace().collect::<Vec<_>>().join(" "));
-        Line::from(vec![
-            canvas.span(before, Role::Dim),
-            canvas.span(truncate_to_width(&text, left), Role::Text),
-            canvas.span(times, Role::Dim),
-        ])
-    };
-    distinct_notices.into_iter().rev().map(line).collect()
+    let mut shown: Vec<SectionLines<'a>> = Vec::new();
+    let mut rows = 0;
+    for (day, text, times) in distinct_notices {
+        let lines = notice_lines(canvas, company, width, (day, text, times));
+        rows += lines.len();
+        if rows > room {
+            break;
+        }
+        shown.push(lines);
+    }
+    shown.into_iter().rev().flatten().collect()
 }
 
-/// Lists action items in at most two rows each, and the key for the next step. Suggestions are included if there is
+fn notice_lines<'a>(
+    canvas: &Canvas<'_>,
+    company: &DisplayedCompany,
+    width: u16,
+    (day, text, times): (u32, &str, u32),
+) -> SectionLines<'a> {
+    let times = if times > 1 { format!(" ({times} times)") } else { String::new() };
+    let before = format!("  day {day:<4} ");
+    let text = company.company_names.insert_names(&text.split_whitespace().collect::<Vec<_>>().join(" "));
+    let lines = wrap(&format!("{text}{times}"), usize::from(width).saturating_sub(before.len()));
+    let line = |(at, text): (usize, String)| {
+        let before = if at == 0 { before.clone() } else { " ".repeat(before.len()) };
+        Line::from(vec![canvas.span(before, Role::Dim), canvas.span(text, Role::Text)])
+    };
+    lines.into_iter().enumerate().map(line).collect()
+}
+
+/// Lists action items in at most `rows` rows each, and the key for the next step. Suggestions are included if there is
 /// space.
 fn next_steps_section<'a>(
     canvas: &Canvas<'_>,
     needs: &[ActionItem],
-    width: u16,
+    (width, rows): (u16, usize),
     roomy: bool,
     context: &ScreenContext<'_>,
 ) -> SectionLines<'a> {
@@ -506,7 +614,7 @@ fn next_steps_section<'a>(
         let (sign, role) = if need.is_urgent { ("!", Role::Warning) } else { ("·", Role::Text) };
         let room = (width as usize).saturating_sub(4 + key.width());
         let text = if roomy { need.describe() } else { need.text.clone() };
-        let rows = wrap_sentences(&text, room, 2);
+        let rows = wrap_sentences(&text, room, rows);
         let mut lines = vec![Line::from(vec![
             canvas.span(format!("  {sign} {}", rows.first().map_or("", String::as_str)), role),
             canvas.span(key, Role::Key),
@@ -521,8 +629,7 @@ fn next_steps_section<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dialogs::dialog_text;
-    use crate::test_kit;
+    use crate::test_kit::{self, dialog_action, dialog_text};
     use novamind_worker::company::DisplayedCompany;
 
     #[test]
@@ -546,6 +653,51 @@ mod tests {
         }
         assert!(large.matches(" → ").count() > small.matches(" → ").count(), "{large}");
         assert!(large.contains("4 weeks ago you forecast"), "{large}");
+    }
+
+    #[test]
+    fn complete_report_is_reached_by_paging() {
+        let company = DisplayedCompany::from_session(&test_kit::played_session(8));
+        let mut company = company;
+        let decisions: Vec<String> = (0..40).map(|at| format!("ads content E1: 0 → {at}00 $/day")).collect();
+        if let Some(week_report) = &mut company.last_week {
+            week_report.decisions = decisions.clone();
+        }
+        for (width, height) in [(60, 13), (80, 21), (120, 37)] {
+            let mut report = WeekReportDialog::new(None);
+            let short = dialog_text(&report, &company, width, height);
+            assert!(short.contains("pagedown"), "{short}");
+            let mut seen = short.clone();
+            for _ in 0..20 {
+                dialog_action(&mut report, Action::PageDown, &company);
+                seen += &dialog_text(&report, &company, width, height);
+            }
+            for decision in &decisions {
+                assert!(seen.contains(decision), "{decision} is missing at {width}×{height}:\n{seen}");
+            }
+            for need in &company.action_items {
+                let last = need.describe();
+                let last = last.split_whitespace().next_back().unwrap_or_default();
+                assert!(seen.contains(last), "{last} is missing at {width}×{height}:\n{seen}");
+            }
+            for _ in 0..60 {
+                dialog_action(&mut report, Action::PageUp, &company);
+                dialog_text(&report, &company, width, height);
+            }
+            assert_eq!(dialog_text(&report, &company, width, height), short);
+        }
+    }
+
+    #[test]
+    fn contracts_of_enterprises_are_listed() {
+        let mut company = DisplayedCompany::from_session(&test_kit::played_session(8));
+        let mut weeks = company.group_weeks.to_vec();
+        let group = Group::parse("E1").expect("a group");
+        weeks.last_mut().expect("a week")[group].signed = 2;
+        company.group_weeks = weeks.into();
+        company.last_week.as_mut().expect("a report").week.new_enterprise_seats = 653;
+        let text = dialog_text(&WeekReportDialog::new(None), &company, 120, 37);
+        assert!(text.contains("2 enterprises signed (E1 2): 653 seats"), "{text}");
     }
 
     #[test]

@@ -14,6 +14,7 @@ use super::context::{EditorDocument, Figure, PaneKeys, ScreenContext, ScreenId};
 use super::effect::Effect;
 use super::own_commands::ListRows;
 use novamind_database::QueryResult;
+use novamind_session::identifiers::Group;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::{ColumnLayout, Table};
 use novamind_worker::message::Response;
@@ -102,6 +103,11 @@ pub trait ScreenState {
     /// Returns the number of unread items, which the tab shows as a badge.
     fn unseen_count(&self) -> usize {
         0
+    }
+
+    /// Returns the group of the open or selected item, if any.
+    fn selected_group(&self, _: &ScreenContext<'_>) -> Option<Group> {
+        None
     }
 
     /// Returns the title of the open item, such as a group or a tool. The item is shown next to a list or replaces the

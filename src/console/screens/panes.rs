@@ -194,6 +194,11 @@ pub trait PaneScreen: ScreenState + Sized + 'static {
     /// Returns the focused pane.
     fn focused_pane(&self) -> Self::PaneId;
 
+    /// Returns the pane that is enlarged to the whole screen.
+    fn enlarged_pane(&self) -> Self::PaneId {
+        self.focused_pane()
+    }
+
     /// Moves the focus to a pane, and ends an edit in any pane. The typed text is kept as a draft.
     fn set_focused_pane(&mut self, name: Self::PaneId);
 
@@ -377,7 +382,7 @@ impl<S: PaneScreen> Screen for S {
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         if canvas.zoomed {
-            draw_pane(self, self.focused_pane(), canvas, area, context);
+            draw_pane(self, self.enlarged_pane(), canvas, area, context);
         } else {
             self.draw_panes(canvas, area, context);
         }

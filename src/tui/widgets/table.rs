@@ -119,6 +119,8 @@ pub struct Table {
     filter: String,
     filter_field: Option<TextField>,
     selects_cells: bool,
+    /// Number of columns that stay visible when the columns are scrolled, in addition to the first column.
+    extra_pinned_columns: usize,
 }
 
 impl Table {
@@ -132,6 +134,11 @@ impl Table {
     /// Enables the selection of a single cell in the selected row.
     pub fn with_cell_selection(self) -> Table {
         Table { selects_cells: true, ..self }
+    }
+
+    /// Keeps the first `count` displayed columns visible when the columns are scrolled. The default is one column.
+    pub fn set_pinned_columns(&mut self, count: usize) {
+        self.extra_pinned_columns = count.saturating_sub(1);
     }
 
     /// Returns the columns of the table in their original order.
@@ -398,9 +405,8 @@ impl Table {
             let role = if focused && *at == self.column { Role::Title } else { Role::Header };
             canvas.draw_aligned(cell, &column.title, role, column.align);
         }
-        if let [_, (second, (x, _)), ..] = columns[..]
-            && self.arranged.get(1) != Some(&second)
-        {
+        let after_gap = columns.iter().zip(&self.arranged).find(|((at, _), arranged)| at != *arranged);
+        if let Some(((_, (x, _)), _)) = after_gap {
             canvas.draw_text(Rect { x: head.x + x - 1, width: 1, ..head }, "←", Role::Key);
         }
         let last = columns.last().and_then(|(last, _)| self.arranged.iter().position(|at| at == last));
@@ -457,14 +463,19 @@ impl Table {
         self.arranged.iter().map(fitted).collect()
     }
 
-    /// Returns the columns that fit into a width, with their positions and widths. The first column is always visible.
-    /// The other columns are scrolled until the selected column is visible.
+    /// Returns the columns that fit into a width, with their positions and widths. The pinned columns are always visible,
+    /// if the selected column fits next to them. Otherwise, only the first column is. The other columns are scrolled until the selected column is visible.
     fn visible_columns(&self, width: u16) -> Vec<(usize, (u16, u16))> {
         let widths = self.fit_widths(width);
         let selected = self.arranged_position();
-        let mut from = 1;
+        let all_pinned = (self.extra_pinned_columns + 1).min(widths.len());
+        let used: u16 = widths[..all_pinned].iter().map(|width| width.saturating_add(2)).sum();
+        let needed =
+            widths.get(selected).map_or(0, |selected| used.saturating_add(selected + COLUMN_MARK_WIDTH));
+        let pinned = if needed <= width { all_pinned } else { 1 };
+        let mut from = pinned;
         loop {
-            let columns = self.columns_from(from, &widths, width);
+            let columns = self.columns_from(pinned, from, &widths, width);
             let whole =
                 |(place, (_, shown)): &(usize, (u16, u16))| *place == selected && *shown == widths[*place];
             if columns.iter().any(whole) || from >= self.arranged.len() || from >= selected {
@@ -474,13 +485,19 @@ impl Table {
         }
     }
 
-    /// Returns the first column, and the columns from a position on that fit into a width, as positions in display
+    /// Returns the pinned columns, and the columns from a position on that fit into a width, as positions in display
     /// order. Columns that do not fit leave space for their number.
-    fn columns_from(&self, from: usize, widths: &[u16], width: u16) -> Vec<(usize, (u16, u16))> {
+    fn columns_from(
+        &self,
+        pinned: usize,
+        from: usize,
+        widths: &[u16],
+        width: u16,
+    ) -> Vec<(usize, (u16, u16))> {
         let last = self.arranged.len().saturating_sub(1);
         let mut columns = Vec::new();
         let mut x = 0;
-        for place in std::iter::once(0).chain(from..self.arranged.len()).filter(|place| *place <= last) {
+        for place in (0..pinned).chain(from..self.arranged.len()).filter(|place| *place <= last) {
             let number = widths[place];
             // A truncated column must be wide enough for readable text.
             let readable = match self.columns[self.arranged[place]].is_indivisible {
@@ -607,6 +624,19 @@ mod tests {
         assert_eq!(drawn(&table, 25)[0], "group ←leads  churn  +1 →");
         table.select_column(4);
         assert_eq!(drawn(&table, 26)[0], "group ←leads  churn  usage");
+    }
+
+    #[test]
+    fn pinned_columns_stay_visible() {
+        let mut table = wide_table();
+        table.set_pinned_columns(2);
+        table.select_column(4);
+        assert_eq!(drawn(&table, 24), ["group  cash ←usage", "S1     1.00   4.00"]);
+        assert!(
+            drawn(&table, 19)[0].ends_with("usage"),
+            "the selected column has priority: {:?}",
+            drawn(&table, 19)
+        );
     }
 
     #[test]

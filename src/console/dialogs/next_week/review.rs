@@ -5,6 +5,7 @@ use ratatui::text::Line as TextLine;
 
 use crate::action::Action;
 use novamind_report::cost_review::{identical_plan_lines, income_and_cost_lines};
+use novamind_report::decision_periods::by_amount;
 use novamind_report::research::late_project_lines;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
@@ -63,7 +64,7 @@ fn review_lines(
     lines.extend(money.map(|line| TextLine::from(canvas.span(line, Role::Text))));
     lines.push(TextLine::default());
     lines.push(head("Settings changed since last week", canvas));
-    for change in &seen.changes {
+    for change in by_amount(&seen.changes) {
         lines.push(TextLine::from(vec![
             canvas.span(format!("  {:<32} ", change.setting.to_string()), Role::Text),
             canvas.span(format!("{:>12} → ", format_number(change.old)), Role::Dim),

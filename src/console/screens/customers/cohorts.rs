@@ -143,7 +143,7 @@ impl CohortCell {
             Action::Up => self.cohort = self.cohort.saturating_sub(1),
             Action::Down => self.cohort += 1,
             Action::Left => self.weeks_since = self.weeks_since.saturating_sub(1),
-            Action::Right => self.weeks_since += 1,
+            Action::Right => self.select_next_week(&weeks, now),
             Action::First => (self.cohort, self.weeks_since) = (0, 0),
             Action::Last => self.cohort = usize::MAX,
             _ => {}
@@ -151,6 +151,15 @@ impl CohortCell {
         self.cohort = self.cohort.min(weeks.len().saturating_sub(1));
         let most = weeks.get(self.cohort).map_or(0, |(week, _)| now.saturating_sub(*week));
         self.weeks_since = self.weeks_since.min(most as usize);
+    }
+
+    /// Selects the next week since the signup. If the cohort is too young, selects the next older cohort with that week.
+    fn select_next_week(&mut self, weeks: &[(u32, &Cohort)], now: u32) {
+        let is_old_enough = |(week, _): &(u32, &Cohort)| *week as usize + self.weeks_since < now as usize;
+        let older = weeks.iter().skip(self.cohort).position(is_old_enough);
+        if let Some(steps) = older {
+            (self.cohort, self.weeks_since) = (self.cohort + steps, self.weeks_since + 1);
+        }
     }
 
     /// Returns the retention in the cell as a figure, with a query for the customers who were still subscribed at the
@@ -286,7 +295,7 @@ mod tests {
         for _ in 0..9 {
             place.handle_action(Action::Right, &cohorts, group, 7);
         }
-        assert_eq!(place, CohortCell { cohort: 0, weeks_since: 3 });
+        assert_eq!(place, CohortCell { cohort: 1, weeks_since: 4 }, "the newer cohort has no week 4");
         place.handle_action(Action::Last, &cohorts, group, 7);
         assert_eq!(place.cohort, 1);
     }

@@ -49,6 +49,8 @@ impl Pane<Customers> for FactsPane {
         let place = match action {
             Action::Up => place.saturating_sub(1),
             Action::Down if selectable_lines.get(place) == Some(fact) => place + 1,
+            Action::PageUp => place.saturating_sub(context.page_rows.into()),
+            Action::PageDown => place + usize::from(context.page_rows),
             Action::First => 0,
             Action::Last => selectable_lines.len(),
             _ => place,

@@ -4,7 +4,7 @@
 use ratatui::layout::Rect;
 
 use super::Customers;
-use super::selection::{move_index, show_rows_effect};
+use super::selection::show_rows_effect;
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
 use crate::curve_chart::{MIN_CHART_ROWS, draw_curve_chart};
@@ -52,7 +52,7 @@ impl Pane<Customers> for FitPane {
         if action == Action::Open {
             return show_rows_effect(self.figure(customers, context));
         }
-        customers.group_state.fit_line = move_index(customers.group_state.fit_line, usize::MAX - 1, action);
+        customers.group_state.fit_scroll.handle_action(action, context.page_rows.into());
         Vec::new()
     }
 
@@ -82,8 +82,13 @@ impl Pane<Customers> for FitPane {
             _ => 0,
         };
         let text = Rect { y: area.y + chart, height: area.height - chart, ..area };
-        let last = lines.len().saturating_sub(text.height as usize);
-        let from = if placement.focused { customers.group_state.fit_line.min(last) } else { 0 };
+        let from = match placement.focused {
+            true => {
+                canvas.page_rows = text.height.max(1);
+                customers.group_state.fit_scroll.scroll_rows(canvas, text, lines.len())
+            }
+            false => 0,
+        };
         for (row, line) in row_rects(text).zip(&lines[from..]) {
             canvas.draw_text(row, &line.text, line.role);
         }

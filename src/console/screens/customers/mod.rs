@@ -204,6 +204,10 @@ impl ScreenState for Customers {
         Vec::new()
     }
 
+    fn selected_group(&self, context: &ScreenContext<'_>) -> Option<Group> {
+        self.group(context.company)
+    }
+
     fn open_item_title(&self, context: &ScreenContext<'_>) -> Option<String> {
         self.open_group.and_then(|_| self.group(context.company)).map(|group| group.to_string())
     }

@@ -11,6 +11,7 @@ use super::{Customers, CustomersPane};
 use crate::context::ScreenContext;
 use crate::screens::panes::{Pane, PanePlacement, draw_pane, draw_stack};
 use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::ScrollState;
 
 #[derive(Debug)]
 pub struct OpenGroupState {
@@ -24,15 +25,16 @@ pub struct OpenGroupState {
     pub flow: usize,
     /// Selected cell of the cohorts.
     pub cohort: cohorts::CohortCell,
-    pub fit_line: usize,
-    pub study_line: usize,
+    pub fit_scroll: ScrollState,
+    pub study_scroll: ScrollState,
 }
 
 impl Default for OpenGroupState {
     fn default() -> OpenGroupState {
         let focus = CustomersPane::Actions;
         let cohort = cohorts::CohortCell::default();
-        OpenGroupState { focus, action: 0, fact_line: 0, weeks_back: 0, flow: 0, cohort, fit_line: 0, study_line: 0 }
+        let [fit_scroll, study_scroll] = Default::default();
+        OpenGroupState { focus, action: 0, fact_line: 0, weeks_back: 0, flow: 0, cohort, fit_scroll, study_scroll }
     }
 }
 

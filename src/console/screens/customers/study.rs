@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::Customers;
-use super::selection::{move_index, show_rows_effect};
+use super::selection::show_rows_effect;
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
@@ -26,12 +26,10 @@ impl Pane<Customers> for StudyPane {
     }
 
     fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
-        let Some(group) = customers.group(context.company) else { return Vec::new() };
         if action == Action::Open {
             return show_rows_effect(self.figure(customers, context));
         }
-        let last = report::report_lines(context.company, group).len().saturating_sub(1);
-        customers.group_state.study_line = move_index(customers.group_state.study_line, last, action);
+        customers.group_state.study_scroll.handle_action(action, context.page_rows.into());
         Vec::new()
     }
 
@@ -50,7 +48,11 @@ impl Pane<Customers> for StudyPane {
 
     fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         if let Some(group) = customers.group(context.company) {
-            report::draw_estimates(canvas, placement.area, context.company, group, customers.group_state.study_line);
+            if placement.focused {
+                canvas.page_rows = placement.area.height.max(1);
+            }
+            let scroll = &customers.group_state.study_scroll;
+            report::draw_estimates(canvas, placement.area, context.company, group, scroll);
         }
     }
 }

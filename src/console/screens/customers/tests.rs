@@ -259,3 +259,44 @@ fn fit_shows_the_curve_and_both_conversions_of_the_open_group() {
     let next = handle_action(&mut screen, Action::Right, &company);
     assert_eq!(crate::test_kit::only_question::<EstimatedCurveQuestion>(&next).0.id(), "S2");
 }
+
+#[test]
+fn narrow_study_shows_every_range() {
+    let (_, company, mut screen) = played_screen::<Customers>(2);
+    screen.show_group(group("S1"), &company);
+    screen.set_focused_pane(CustomersPane::Study);
+    for (width, height) in [(60, 13), (80, 21)] {
+        handle_action(&mut screen, Action::First, &company);
+        let mut text = screen_text(&screen, &company, width, height);
+        for _ in 0..30 {
+            handle_action(&mut screen, Action::PageDown, &company);
+            text += &screen_text(&screen, &company, width, height);
+        }
+        for line in crate::screens::market::report::report_lines(&company, group("S1")) {
+            assert!(text.contains(&line.value), "{} at {width}×{height}:\n{text}", line.value);
+        }
+    }
+}
+
+#[test]
+fn fit_text_is_read_by_pages() {
+    let (_, company, mut screen) = played_screen::<Customers>(4);
+    screen.show_group(group("S1"), &company);
+    screen.set_focused_pane(CustomersPane::Fit);
+    let first = screen_text(&screen, &company, 80, 13);
+    handle_action(&mut screen, Action::PageDown, &company);
+    assert_ne!(screen_text(&screen, &company, 80, 13), first);
+    handle_action(&mut screen, Action::PageUp, &company);
+    assert_eq!(screen_text(&screen, &company, 80, 13), first);
+}
+
+#[test]
+fn every_week_of_the_retention_is_reached() {
+    let (_, company, mut screen) = played_screen::<Customers>(8);
+    screen.show_group(group("S1"), &company);
+    screen.set_focused_pane(CustomersPane::Cohorts);
+    let visible = |screen: &Customers| screen_text(screen, &company, 80, 21).contains("+7");
+    assert!(!visible(&screen));
+    (0..7).for_each(|_| drop(handle_action(&mut screen, Action::Right, &company)));
+    assert!(visible(&screen), "{}", screen_text(&screen, &company, 80, 21));
+}

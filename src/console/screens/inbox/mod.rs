@@ -168,6 +168,7 @@ impl Inbox {
         self.rows = (0..threads.len()).filter(|at| self.view.includes(threads[*at].state)).collect();
         let row = |at: &usize| thread_row(&threads[*at], self.marked.contains(&threads[*at].number));
         let rows = self.rows.iter().map(row).collect();
+        self.table.set_pinned_columns(thread_list::PINNED_COLUMNS);
         self.table.set_columns_and_rows(columns(self.view), rows);
         let from = here.and_then(|here| shown.iter().position(|number| *number == here)).unwrap_or(0);
         let rows = self.rows.iter().enumerate().map(|(row, at)| (self.threads.threads[*at].number, row));
@@ -323,6 +324,10 @@ fn list_prices(company: &DisplayedCompany) -> [f64; 3] {
 }
 
 impl ScreenState for Inbox {
+    fn selected_group(&self, _: &ScreenContext<'_>) -> Option<Group> {
+        self.selected_thread().and_then(|thread| Group::parse(&thread.group))
+    }
+
     fn open_item_title(&self, _: &ScreenContext<'_>) -> Option<String> {
         match self.focus {
             InboxPane::Outcomes => Some("outcomes".to_owned()),
@@ -399,6 +404,11 @@ impl PaneScreen for Inbox {
         self.focus
     }
 
+    /// If the list is empty, the other panes are empty too.
+    fn enlarged_pane(&self) -> InboxPane {
+        if self.rows.is_empty() && self.rules_form.is_none() { self.left_pane() } else { self.focus }
+    }
+
     fn set_focused_pane(&mut self, name: InboxPane) {
         self.focus = name;
         self.value_field = None;
@@ -465,8 +475,7 @@ impl PaneScreen for Inbox {
             Action::SendOffer => return Some(self.send_offers(context.company)),
             Action::RejectOffer => return Some(self.confirm_rejection(context.company)),
             Action::InboxGroup => {
-                let group = self.selected_thread().and_then(|thread| Group::parse(&thread.group));
-                let effect = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
+                let effect = self.selected_group(context).map(|group| Effect::ShowGroup(ScreenId::Customers, group));
                 return Some(effect.into_iter().collect());
             }
             Action::InboxSql => {

@@ -7,6 +7,7 @@ use crate::keys::KeyBindings;
 use crate::screens::Screen;
 use crate::test_kit::{
     draw_at_all_sizes, handle_action, loaded_screen, new_company, screen_text, session_with_negotiations,
+    zoomed_text,
 };
 use novamind_database::{Cell as Datum, number_at};
 use novamind_record::trajectory::record::Via;
@@ -75,6 +76,18 @@ fn crowded_company(threads: u32) -> (DisplayedCompany, QueryResult, QueryResult)
 
 fn crowded_screen() -> (Inbox, DisplayedCompany) {
     crowded_screen_with(200)
+}
+
+#[test]
+fn scrolled_columns_keep_the_names() {
+    let (mut screen, company) = crowded_screen();
+    for (width, height) in [(60, 13), (80, 21), (120, 37)] {
+        handle_action(&mut screen, Action::Down, &company);
+        (0..11).for_each(|_| drop(handle_action(&mut screen, Action::Right, &company)));
+        let text = screen_text(&screen, &company, width, height);
+        let head = text.lines().find(|line| line.contains("needs quota")).unwrap_or_default();
+        assert!(head.contains("enterprise"), "{width}×{height}:\n{text}");
+    }
 }
 
 fn crowded_screen_with(threads: u32) -> (Inbox, DisplayedCompany) {
@@ -292,6 +305,11 @@ fn empty_inbox_explains_how_leads_arrive() {
                 && text.contains("set_targeted_ad_spend"),
             "{text}"
         );
+    }
+    for pane in 0..screen.pane_count() {
+        screen.set_focus(pane);
+        let text = zoomed_text(&screen, &company, 80, 21);
+        assert!(text.contains("No enterprise has asked") && !text.contains("shows more"), "pane {pane}: {text}");
     }
     for action in
         [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(THREAD_ACTIONS)

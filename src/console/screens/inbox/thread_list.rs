@@ -19,6 +19,9 @@ use novamind_tui::widgets::{Table, TableCell, TableColumn};
 /// Width of names in a narrow list. The number next to the name identifies the enterprise.
 const NAME_WIDTH: u16 = 14;
 
+/// Number of the first columns that stay visible when the columns are scrolled: the mark, the days and the name.
+pub(super) const PINNED_COLUMNS: usize = 3;
+
 pub struct ThreadListPane;
 
 impl Pane<Inbox> for ThreadListPane {
@@ -137,7 +140,7 @@ fn draw_empty_state(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, context:
     if lines.len() > inside.height as usize {
         let zoom = context.keys.label(Action::Zoom).unwrap_or_default();
         lines.truncate((inside.height as usize).saturating_sub(1));
-        lines.push(format!("… {zoom} shows more"));
+        lines.push(if canvas.zoomed { "…".to_owned() } else { format!("… {zoom} shows more") });
     }
     for (row, line) in row_rects(inside).zip(lines) {
         canvas.draw_text(row, &line, Role::Dim);

@@ -27,7 +27,7 @@ use novamind_session::Preview;
 use novamind_session::identifiers::Group;
 use novamind_tools::{Answer, DiscoveryAttempt, ToolId};
 use novamind_tui::canvas::Canvas;
-use novamind_tui::widgets::Table;
+use novamind_tui::widgets::{ScrollState, Table};
 use novamind_worker::question::Pending;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
@@ -74,7 +74,7 @@ pub struct Market {
     selected_measurement: Option<usize>,
     /// Level of the next market study that the user chose.
     target_level: Option<u8>,
-    first_line: usize,
+    report_scroll: ScrollState,
     /// Check of the tool call before the user confirms the call.
     pending_call: Pending<PreviewCallQuestion>,
 }
@@ -110,7 +110,7 @@ impl Market {
 
     /// Resets the insight report after the selected group has changed.
     fn reset_report(&mut self) {
-        (self.target_level, self.first_line) = (None, 0);
+        (self.target_level, self.report_scroll) = (None, ScrollState::default());
     }
 
     /// Resets the insight report if the selected group is not `before`.
@@ -215,6 +215,10 @@ impl Market {
 }
 
 impl ScreenState for Market {
+    fn selected_group(&self, _: &ScreenContext<'_>) -> Option<Group> {
+        self.group()
+    }
+
     fn screen_escape_depth(&self) -> usize {
         usize::from(self.focus == MarketPane::Report)
     }

@@ -17,13 +17,15 @@ use novamind_tools::{Estimates, Influence};
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
+use novamind_tui::widgets::ScrollState;
 use novamind_worker::company::DisplayedCompany;
 
 /// A line with text at the left and figures at the right.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReportLine {
     label: String,
-    value: String,
+    /// Range of the estimate, or the heading of the ranges.
+    pub value: String,
     role: Role,
 }
 
@@ -190,23 +192,16 @@ impl Pane<Market> for ReportPane {
     }
 
     fn handle_action(&self, market: &mut Market, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
-        let page = usize::from(context.page_rows.max(1));
-        let count = market.group().map_or(0, |group| report_lines(context.company, group).len());
-        let (from, last) = (market.first_line, count.saturating_sub(page));
-        market.first_line = match action {
+        match action {
             Action::Open => return market.show_customers_effect(context.company),
-            Action::Up => from.min(last).saturating_sub(1),
-            Action::Down => (from + 1).min(last),
-            Action::PageUp => from.saturating_sub(page),
-            Action::PageDown => (from + page).min(last),
-            Action::First => 0,
-            Action::Last => last,
             Action::Close => {
                 market.focus = MarketPane::Groups;
-                0
+                market.report_scroll = ScrollState::default();
             }
-            _ => from,
-        };
+            _ => {
+                market.report_scroll.handle_action(action, context.page_rows.into());
+            }
+        }
         Vec::new()
     }
 
@@ -241,7 +236,7 @@ impl Pane<Market> for ReportPane {
         if placement.focused {
             canvas.page_rows = rest.height.max(1);
         }
-        draw_estimates(canvas, rest, company, group, market.first_line);
+        draw_estimates(canvas, rest, company, group, &market.report_scroll);
     }
 }
 
@@ -259,17 +254,32 @@ fn draw_unknown(canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>
     }
 }
 
-/// Draws the estimates of a group, starting at a line of the report.
-pub fn draw_estimates(canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany, group: Group, from: usize) {
+/// Draws the estimates of a group at a scroll position.
+pub fn draw_estimates(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    company: &DisplayedCompany,
+    group: Group,
+    scroll: &ScrollState,
+) {
     let lines = report_lines(company, group);
-    let from = from.min(lines.len().saturating_sub(area.height as usize));
-    for (row, line) in row_rects(area).zip(&lines[from..]) {
-        canvas.draw_text(row, &line.label, line.role);
-        let taken = line.label.width() as u16 + 2;
-        // A range is drawn only if it fits completely.
-        if taken + line.value.width() as u16 <= row.width {
-            canvas.draw_aligned(row, &line.value, line.role, Align::Right);
-        }
+    let rows: Vec<_> = lines.iter().flat_map(|line| estimate_rows(line, area.width.into())).collect();
+    let from = scroll.scroll_rows(canvas, area, rows.len());
+    for (row, (label, value, role)) in row_rects(area).zip(&rows[from..]) {
+        canvas.draw_text(row, label, *role);
+        canvas.draw_aligned(row, value, *role, Align::Right);
+    }
+}
+
+/// Returns the label, the value and the role of each row of a line. In a narrow area, the label has no gaps. If that is
+/// still too wide, the value is in a second row.
+fn estimate_rows(line: &ReportLine, width: usize) -> Vec<(String, String, Role)> {
+    let fits = |label: &str| line.value.is_empty() || label.width() + 2 + line.value.width() <= width;
+    let indent = line.label.len() - line.label.trim_start().len();
+    let close = " ".repeat(indent) + &line.label.split_whitespace().collect::<Vec<_>>().join(" ");
+    match [line.label.clone(), close.clone()].into_iter().find(|label| fits(label)) {
+        Some(label) => vec![(label, line.value.clone(), line.role)],
+        None => vec![(close, String::new(), line.role), (String::new(), line.value.clone(), line.role)],
     }
 }
 

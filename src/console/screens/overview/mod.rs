@@ -22,6 +22,7 @@ use super::product::model::{ServiceDay, parse_projects, parse_service_days};
 use crate::action::Action;
 use crate::context::ScreenContext;
 use novamind_database::QueryResult;
+use novamind_session::identifiers::Group;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 use novamind_worker::company::DisplayedCompany;
@@ -68,6 +69,11 @@ impl Overview {
 }
 
 impl ScreenState for Overview {
+    fn selected_group(&self, context: &ScreenContext<'_>) -> Option<Group> {
+        let row = self.quality.selected().filter(|_| self.focus == OverviewPane::Quality)?;
+        context.company.quality.get(row).map(|delivered_quality| delivered_quality.group)
+    }
+
     fn screen_queries(&self) -> &'static [Reading] {
         &[Reading::Service, Reading::WeekNotices, Reading::Research]
     }

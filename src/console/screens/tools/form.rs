@@ -1,5 +1,6 @@
 //! The form of a tool: the focused cell, typed input, the check of the call, and the last answer.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use crossterm::event::KeyEvent;
@@ -48,6 +49,28 @@ pub struct ToolForm {
     pub answer: Option<Result<Value, Rejection>>,
     /// Earlier calls of the tool, the newest first, as decision day and arguments.
     pub earlier_calls: Vec<(u32, String)>,
+    pub text_page: TextPage,
+}
+
+/// The displayed page of a text that does not fit below the values.
+#[derive(Default)]
+pub struct TextPage {
+    /// Number of the page. Page 0 is the normal view.
+    pub number: usize,
+    /// Number of the last page, determined when the last frame was drawn.
+    pub last: Cell<usize>,
+}
+
+impl TextPage {
+    /// Turns the page. Other actions return to the normal view. Returns whether the action was a page action.
+    pub fn turn(&mut self, action: Action) -> bool {
+        self.number = match action {
+            Action::PageDown => (self.number + 1).min(self.last.get()),
+            Action::PageUp => self.number.saturating_sub(1),
+            _ => 0,
+        };
+        matches!(action, Action::PageDown | Action::PageUp)
+    }
 }
 
 impl ToolForm {
@@ -69,6 +92,7 @@ impl ToolForm {
             sent_arguments: None,
             answer: None,
             earlier_calls: earlier_calls::earlier_calls(spec.id, company, earlier_calls::MAX_EARLIER_CALLS),
+            text_page: TextPage::default(),
         }
     }
 

@@ -51,6 +51,9 @@ impl Pane<Tools> for FormPane {
     }
 
     fn handle_action(&self, tools: &mut Tools, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        if tools.form(context.company).is_some_and(|form| form.text_page.turn(action)) {
+            return Vec::new();
+        }
         match action {
             Action::Close => {
                 tools.focus = ToolsPane::List;
@@ -70,7 +73,10 @@ impl Pane<Tools> for FormPane {
     }
 
     fn handle_key(&self, tools: &mut Tools, key: &KeyEvent, context: &ScreenContext<'_>) -> Vec<Effect> {
-        tools.form(context.company).map_or(Vec::new(), |form| form.handle_key(key))
+        tools.form(context.company).map_or(Vec::new(), |form| {
+            form.text_page.number = 0;
+            form.handle_key(key)
+        })
     }
 
     fn paste(&self, tools: &mut Tools, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -93,6 +99,7 @@ impl Pane<Tools> for FormPane {
             return form.handle_action(Action::EditCell, context.company);
         }
         form.focus = place.unwrap_or(form.focus);
+        form.text_page.number = 0;
         Vec::new()
     }
 
@@ -117,23 +124,99 @@ impl Pane<Tools> for FormPane {
         if let Some(editor) = form.code_editor() {
             return draw_code(editor, canvas, inside, placement.focused);
         }
-        let FormLayout { head, outcome, gap } = layout_form(tools, form, inside, context);
+        if placement.focused && form.text_page.number > 0 {
+            return draw_text_page(tools, form, canvas, placement, inside, context);
+        }
+        let FormLayout { head, outcome, gap, .. } = layout_form(tools, form, inside, context);
         let lines = form_lines(form);
         let below = draw_head(&head, canvas, inside);
-        // In a dense layout, the values can use all rows. Otherwise, up to half of the rows are reserved for the
-        // outcome.
-        let kept = if gap == 0 { 0 } else { outcome.lines.len().min(below.height as usize / 2) };
+        // In a dense layout, the values can use all rows except one. Otherwise, up to half of the rows are reserved for
+        // the outcome.
+        let kept = outcome.lines.len().min(if gap == 0 { 1 } else { usize::MAX }).min(below.height as usize / 2);
         let room = below.height.saturating_sub(kept as u16);
         let sheet = Rect { height: (lines.len() as u16).min(room), ..below };
         draw_sheet(form, Some(&tools.leads), &lines, canvas, sheet, placement.focused);
         let rest = area_below(below, sheet.height + gap.min(sheet.height));
-        let used = draw_outcome(&outcome.lines, canvas, rest, context);
+        let used = draw_outcome(&outcome.lines, canvas, rest, placement.focused, context);
         let below = area_below(rest, used + 1);
         let used = tools.price_curve.draw(form, canvas, below);
         let below = area_below(below, used);
         let used = draw_earlier(&form.earlier_calls, canvas, below);
-        draw_manual(form.spec, canvas, area_below(below, used), context);
+        let manual = manual_lines(form.spec, inside.width, context);
+        let manual_area = area_below(below, used);
+        draw_manual(&manual, canvas, manual_area);
+        let is_complete = gap > 0
+            && usize::from(sheet.height) == lines.len()
+            && outcome.lines.len() <= usize::from(rest.height)
+            && form.earlier_calls.len() < usize::from(below.height)
+            && (manual.len() + 1).max(MIN_MANUAL_ROWS) <= usize::from(manual_area.height);
+        form.text_page.last.set(usize::from(!is_complete));
     }
+}
+
+/// Draws a page of the complete text of a form, for a window that is too small for it. The pages begin with the first
+/// line that the normal view omits.
+fn draw_text_page(
+    tools: &Tools,
+    form: &ToolForm,
+    canvas: &mut Canvas<'_>,
+    placement: PanePlacement,
+    area: Rect,
+    context: &ScreenContext<'_>,
+) {
+    let height = area.height as usize;
+    let step = height.saturating_sub(1).max(1);
+    let FormLayout { head, complete_head, gap, .. } = layout_form(tools, form, area, context);
+    let first = if gap == 0 { head.len().min(step) } else { step };
+    let sheet = form_lines(form);
+    let below = text_below_values(tools, form, area.width, context);
+    let rows = complete_head.len() + sheet.len() + below.len();
+    let last_row = rows.saturating_sub(height);
+    form.text_page.last.set(1 + last_row.saturating_sub(first).div_ceil(step));
+    let number = form.text_page.number.min(form.text_page.last.get());
+    let from = (first + (number - 1) * step).min(last_row);
+    let shown_head = complete_head.get(from..).unwrap_or_default();
+    let rest = draw_head(shown_head, canvas, area);
+    let skipped = from.saturating_sub(complete_head.len());
+    let shown_sheet = sheet.get(skipped..).unwrap_or_default();
+    let shown_sheet = &shown_sheet[..shown_sheet.len().min(rest.height as usize)];
+    let values = Rect { height: shown_sheet.len() as u16, ..rest };
+    draw_sheet(form, Some(&tools.leads), shown_sheet, canvas, values, true);
+    let skipped = skipped.saturating_sub(sheet.len());
+    draw_head(below.get(skipped..).unwrap_or_default(), canvas, area_below(rest, values.height));
+    canvas.draw_scroll_marks(placement.area, from, rows);
+}
+
+/// Returns all text below the values: the outcome in full detail, the earlier calls and the manual.
+fn text_below_values(
+    tools: &Tools,
+    form: &ToolForm,
+    width: u16,
+    context: &ScreenContext<'_>,
+) -> Vec<(String, Role)> {
+    let blank = || (String::new(), Role::Text);
+    let mut lines = vec![blank()];
+    lines.extend(outcome_lines(form, tools, context, (width as usize, DetailLevel::Full)).lines);
+    if !form.earlier_calls.is_empty() {
+        lines.extend([blank(), ("earlier calls".to_owned(), Role::Header)]);
+        let calls = form.earlier_calls.iter().map(earlier_call_text);
+        lines.extend(calls.flat_map(|call| wrap(&call, width as usize)).map(|line| (line, Role::Dim)));
+    }
+    lines.extend([blank(), (MANUAL_HEADING.to_owned(), Role::Header)]);
+    lines.extend(manual_lines(form.spec, width, context).into_iter().map(|line| (line, Role::Text)));
+    lines
+}
+
+const MANUAL_HEADING: &str = "manual";
+/// Minimum height of the area for the manual.
+const MIN_MANUAL_ROWS: usize = 8;
+
+fn manual_lines(spec: &ToolSpec, width: u16, context: &ScreenContext<'_>) -> Vec<String> {
+    wrap(&describe::format_manual(spec, &context.company.numbers), width as usize)
+}
+
+fn earlier_call_text((day, arguments): &(u32, String)) -> String {
+    format!("day {day:>3}  {arguments}")
 }
 
 fn draw_code(editor: &TextEditor, canvas: &mut Canvas<'_>, area: Rect, focused: bool) {
@@ -155,6 +238,8 @@ const MIN_BRIEF_WIDTH: usize = 36;
 struct FormLayout {
     /// Description and cost of the tool, with a blank row if it fits.
     head: Vec<(String, Role)>,
+    /// The complete description and the cost, with a blank row.
+    complete_head: Vec<(String, Role)>,
     outcome: OutcomeLines,
     /// Number of blank rows below the values.
     gap: u16,
@@ -178,12 +263,13 @@ fn layout_form(tools: &Tools, form: &ToolForm, area: Rect, context: &ScreenConte
     };
     let usual = outcome_with_detail(DetailLevel::Full);
     if usual.required_lines == 0 || width < MIN_BRIEF_WIDTH || fits(&blank, 1, &usual) {
-        return FormLayout { head: blank, outcome: usual, gap: 1 };
+        return FormLayout { head: blank.clone(), complete_head: blank, outcome: usual, gap: 1 };
     }
     let dense = outcome_with_detail(DetailLevel::Compact);
     let outcome = if fits(&summary, 0, &dense) { dense } else { outcome_with_detail(DetailLevel::Brief) };
+    let complete_head = blank.clone();
     let head = [blank, terms, summary].into_iter().find(|head| fits(head, 0, &outcome)).unwrap_or_default();
-    FormLayout { head, outcome, gap: 0 }
+    FormLayout { head, complete_head, outcome, gap: 0 }
 }
 
 fn draw_head(head: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect) -> Rect {
@@ -194,14 +280,23 @@ fn draw_head(head: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect) -> Re
 }
 
 /// Draws the check of the call and the answer. Returns the number of rows.
-fn draw_outcome(lines: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) -> u16 {
+fn draw_outcome(
+    lines: &[(String, Role)],
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    focused: bool,
+    context: &ScreenContext<'_>,
+) -> u16 {
     let mut shown: Vec<TextLine<'_>> =
         lines.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
-    // If the text is truncated, the last row names the key that shows the complete text.
+    // If the text is truncated, the last row names the keys that show the rest.
     if shown.len() > area.height as usize && area.height > 0 {
         shown.truncate(area.height as usize - 1);
-        let explain = context.keys.label(Action::Explain).unwrap_or_default();
-        let more = format!("… {explain} in the list of tools shows the rest");
+        let key = |action| context.keys.label(action).unwrap_or_default();
+        let more = match focused {
+            true => format!("… {} shows the rest", key(Action::PageDown)),
+            false => format!("… {} and then {} show the rest", key(Action::Open), key(Action::PageDown)),
+        };
         shown.push(TextLine::from(canvas.span(more, Role::Dim)));
     }
     canvas.draw_lines(area, &shown);
@@ -218,24 +313,23 @@ fn draw_earlier(calls: &[(u32, String)], canvas: &mut Canvas<'_>, area: Rect) ->
     if let Some(row) = rows.next() {
         canvas.draw_text(row, "earlier calls", Role::Header);
     }
-    for (row, (day, arguments)) in rows.zip(calls) {
-        canvas.draw_text(row, &format!("day {day:>3}  {arguments}"), Role::Dim);
+    for (row, call) in rows.zip(calls) {
+        canvas.draw_text(row, &earlier_call_text(call), Role::Dim);
     }
     used
 }
 
 /// Draws the manual of the tool in large windows.
-fn draw_manual(spec: &ToolSpec, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
-    if area.height < 8 {
+fn draw_manual(lines: &[String], canvas: &mut Canvas<'_>, area: Rect) {
+    if usize::from(area.height) < MIN_MANUAL_ROWS {
         return;
     }
     let mut rows = row_rects(area);
     if let Some(row) = rows.next() {
-        canvas.draw_text(row, "manual", Role::Header);
+        canvas.draw_text(row, MANUAL_HEADING, Role::Header);
     }
-    for (row, line) in rows.zip(wrap(&describe::format_manual(spec, &context.company.numbers), area.width as usize))
-    {
-        canvas.draw_text(row, &line, Role::Text);
+    for (row, line) in rows.zip(lines) {
+        canvas.draw_text(row, line, Role::Text);
     }
 }
 

@@ -252,6 +252,7 @@ impl ScreenState for Tools {
             }
             Response::ToolCalled(tool, answer, _) => {
                 if let Some(form) = self.forms.get_mut(tool) {
+                    form.text_page.number = 0;
                     if answer.is_ok() && tool.executes_code() {
                         // The form keeps its code, so that the user can change the code and send it again.
                         form.stop_typing();

@@ -472,3 +472,36 @@ fn code_keeps_its_lines_when_pasted() {
     let [Effect::Request(Request::Call { arguments, .. })] = &effects[..] else { panic!("{effects:?}") };
     assert_eq!(arguments["code"], "# python\nfor day in range(2):\n    print(day)\n");
 }
+
+#[test]
+fn pages_show_the_complete_text_and_keep_the_focused_value() {
+    let mut session = played_session(2);
+    let company = DisplayedCompany::from_session(&session);
+    let mut tools: Tools = loaded_screen(&mut session, &company);
+    for tool in [ToolId::SetUsageQuotas, ToolId::SetModelTiers, ToolId::ListResearchProjects] {
+        tools.show_tool(tool, &company);
+        if tool == ToolId::ListResearchProjects {
+            let answer = session.call(tool.spec().name(), &json!({}), Via::Form).map(Box::new);
+            let keys = KeyBindings::bundled();
+            let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+            tools.handle_response(&Response::ToolCalled(tool, answer, company.clone().into()), &context);
+        }
+        let mut seen = screen_text(&tools, &company, 80, 21);
+        assert!(!seen.contains("in the list of tools"), "{seen}");
+        let focus = tools.focused_path();
+        for _ in 0..40 {
+            handle_action(&mut tools, Action::PageDown, &company);
+            seen += &screen_text(&tools, &company, 80, 21);
+        }
+        let form = tools.visible_form().expect("a form");
+        assert_eq!((tools.focused_path(), form.text_page.number), (focus, form.text_page.last.get()), "{tool}");
+        let keys = KeyBindings::bundled();
+        let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+        let all = outcome::outcome_lines(form, &tools, &context, (76, outcome::DetailLevel::Full));
+        for (line, _) in all.lines {
+            assert!(seen.contains(line.trim_end()), "{tool}: {line} is missing:\n{seen}");
+        }
+        handle_action(&mut tools, Action::Down, &company);
+        assert_eq!(tools.visible_form().map(|form| form.text_page.number), Some(0), "moving shows the values again");
+    }
+}

@@ -339,6 +339,10 @@ fn select_row(table: &mut Table, row: Option<usize>) {
 }
 
 impl ScreenState for Xray {
+    fn selected_group(&self, _: &ScreenContext<'_>) -> Option<Group> {
+        self.group()
+    }
+
     fn on_company_change(&mut self, context: &ScreenContext<'_>) {
         self.fill_tables();
         self.fill_groups(context.company);

@@ -488,7 +488,15 @@ mod tests {
 
     #[test]
     fn header_drops_the_name_before_the_subscribers() {
-        let pieces = [" NovaMind", "  day 46/500", " · wk 7/72", "   cash $1.23M", " +$12.3k", "   runway to end", "   subs 1.2k"];
+        let pieces = [
+            " NovaMind",
+            "  day 46/500",
+            " · wk 7/72",
+            "   cash $1.23M",
+            " +$12.3k",
+            "   runway to end",
+            "   subs 1.2k",
+        ];
         let dropped = |width| pieces_before_subscribers(&pieces, width);
         assert_eq!(dropped(120), [0; 0]);
         assert_eq!(dropped(80), [0]);

@@ -87,7 +87,9 @@ impl Tour {
     /// Goes back to the previous possible step. Returns false if the current step is the first one.
     pub fn go_back(&mut self, company: &DisplayedCompany) -> bool {
         let before = self.step.unwrap_or(0);
-        let Some(previous) = (0..before).rev().find(|at| steps()[*at].applies_to(company)) else { return false };
+        let Some(previous) = (0..before).rev().find(|at| steps()[*at].applies_to(company)) else {
+            return false;
+        };
         (self.step, self.revisited, self.is_seen) = (Some(previous), Some(previous), false);
         true
     }

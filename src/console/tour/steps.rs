@@ -153,7 +153,10 @@ impl TourStep {
             return None;
         }
         let (cell, amount) = (insert_figures(cell, company), self.setting(company).unwrap_or(0.0));
-        Some(format!("You set something else: {cell} is {}, and this step needs {value}.", grouped_number(amount, 0)))
+        Some(format!(
+            "You set something else: {cell} is {}, and this step needs {value}.",
+            grouped_number(amount, 0)
+        ))
     }
 }
 

@@ -47,9 +47,9 @@ pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<Actio
         prices.price(thread).map_or(0.0, |(price, _)| f64::from(thread.seats) * price)
     };
     // The first thread in order of payments, then of seats.
-    let first = waiting.iter().max_by(|left, right| {
-        value(left).total_cmp(&value(right)).then(left.seats.cmp(&right.seats))
-    })?;
+    let first = waiting
+        .iter()
+        .max_by(|left, right| value(left).total_cmp(&value(right)).then(left.seats.cmp(&right.seats)))?;
     let (who, fate) = match waiting.len() {
         1 => (
             format!("{} waits", situation.session.company().company_names().name_with_number(first.customer)),
@@ -59,10 +59,7 @@ pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<Actio
     };
     Some(ActionItem {
         problem: Problem::Threads,
-        text: format!(
-            "{who} for an answer ({}). Without an answer, {fate} {by}.",
-            prices.describe(waiting)
-        ),
+        text: format!("{who} for an answer ({}). Without an answer, {fate} {by}.", prices.describe(waiting)),
         proposal: None,
         target: ActionTarget::Thread(first.thread),
         at_risk: prices.monthly_payments(waiting) * RISK_DAYS / DAYS_PER_MONTH,

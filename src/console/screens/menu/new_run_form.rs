@@ -287,7 +287,9 @@ impl NewRunForm {
         };
         let (value, role) = self.value(at);
         match field {
-            Some(field) if here && self.is_typing() => field.draw(canvas, Rect { width: FIELD_WIDTH.min(place.width), ..place }),
+            Some(field) if here && self.is_typing() => {
+                field.draw(canvas, Rect { width: FIELD_WIDTH.min(place.width), ..place })
+            }
             _ => canvas.draw_text(place, &value, role),
         }
         if let Some(problem) = self.problem(at) {

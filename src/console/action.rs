@@ -278,6 +278,7 @@ actions! {
         LessonPage "lesson-page" "task" "In a lesson: open the whole task as a page, with its question, hints and goals."
         Tour "tour" "tour" "Resume the tour in its run or in a practice run; start it from the start menu."
         TourSkip "tour-skip" "skip" "Continue with the next step of the tour, or skip a step."
+        TourBack "tour-back" "back" "Go back to the previous step of the tour."
         TourClose "tour-close" "close" "Close the tour; it can be resumed at any time."
         NextTheme "next-theme" "next theme" "Switch to the next color theme."
         NextMarker "next-marker" "next marker" "Draw charts with braille dots, blocks or ASCII characters."

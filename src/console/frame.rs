@@ -82,6 +82,9 @@ fn draw_stage(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
 /// Lists the chords that can complete a key sequence, in the lower right corner.
 fn draw_pending_keys(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
     let following = app.keys.completions(&app.scopes(), &app.pending_chords);
+    if following.is_empty() {
+        return;
+    }
     let keys = following.iter().map(|(keys, _)| keys.width()).max().unwrap_or(0) as u16;
     let titles = following.iter().map(|(_, action)| action.entry().title.width()).max().unwrap_or(0) as u16;
     let (width, height) = ((keys + titles + 7).max(20), following.len() as u16 + 2);
@@ -237,7 +240,11 @@ fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Displaye
     let mut left = Rect { width: row.width - width, ..row };
     // If the result is hidden, the header ends with the day.
     let shown = if hides_result { 3 } else { pieces.len() };
-    for (piece, role) in pieces.into_iter().take(shown) {
+    let dropped = pieces_before_subscribers(&pieces.each_ref().map(|(piece, _)| piece.as_str()), left.width);
+    for (at, (piece, role)) in pieces.into_iter().enumerate().take(shown) {
+        if !hides_result && dropped.contains(&at) {
+            continue;
+        }
         // A figure that does not fit is omitted, because a truncated figure would be wrong.
         let taken = piece.width() as u16;
         if taken + 1 > left.width {
@@ -247,6 +254,22 @@ fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Displaye
         left = Rect { x: left.x + taken, width: left.width - taken, ..left };
     }
     canvas.draw_aligned(Rect { x: row.right() - width, width, ..row }, &state, Role::Title, Align::Right);
+}
+
+/// Indexes of the pieces of the header that are less important than the number of subscribers, in the order in which
+/// they are dropped: the name of the program and the week.
+const DROPPED_PIECES: [usize; 2] = [0, 2];
+/// Index of the number of subscribers.
+const SUBSCRIBERS_PIECE: usize = 6;
+
+/// Returns the pieces of the header that are omitted, so that the number of subscribers fits.
+fn pieces_before_subscribers(pieces: &[&str], width: u16) -> &'static [usize] {
+    let fits = |dropped: &&[usize]| {
+        let kept = (0..=SUBSCRIBERS_PIECE).filter(|at| !dropped.contains(at));
+        kept.map(|at| pieces[at].width()).sum::<usize>() < usize::from(width)
+    };
+    let choices = [&DROPPED_PIECES[..0], &DROPPED_PIECES[..1], &DROPPED_PIECES[..]];
+    choices.into_iter().find(fits).unwrap_or(&DROPPED_PIECES)
 }
 
 /// Returns a label with the remaining time until the next time limit.
@@ -263,11 +286,13 @@ type TabFormat = fn(&str, &str, &str, bool) -> String;
 fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     // The first format in which every tab fits is used, otherwise the last format. In the narrowest windows, only the
     // tab of the current screen shows a title.
-    let tab_formats: [TabFormat; 6] = [
+    let tab_formats: [TabFormat; 8] = [
         |key, title, badge, _| format!(" {key} {title}{badge} "),
         |key, title, badge, _| format!(" {key} {title}{badge}"),
         |key, title, badge, _| format!(" {key} {}{badge}", short_title(title)),
         |key, title, badge, _| format!(" {key} {}{}", short_title(title), badge.trim()),
+        |key, title, badge, _| format!(" {key} {:.4}{}", short_title(title), badge.trim()),
+        |key, title, badge, _| format!(" {key} {:.3}{}", short_title(title), badge.trim()),
         |key, title, badge, _| {
             format!(" {key} {}{}", short_title(title), badge.trim().get(.."●".len()).unwrap_or_default())
         },
@@ -290,8 +315,8 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     let fits = |texts: &Vec<(ScreenId, String)>| {
         texts.iter().map(|(_, text)| text.width()).sum::<usize>() <= row.width as usize
     };
-    let named = |screens| tab_formats[..5].iter().map(move |tab_format| texts(screens, tab_format));
-    let fitting = named(&all).chain(named(&fewer)).find(fits).unwrap_or_else(|| texts(&all, &tab_formats[5]));
+    let named = |screens| tab_formats[..7].iter().map(move |tab_format| texts(screens, tab_format));
+    let fitting = named(&all).chain(named(&fewer)).find(fits).unwrap_or_else(|| texts(&all, &tab_formats[7]));
     let mut x = row.x;
     for (screen, text) in fitting {
         let width = text.width() as u16;
@@ -460,6 +485,23 @@ mod tests {
     use super::*;
     use crate::app::SimulationProgress;
     use novamind_worker::message::SimulatedDay;
+
+    #[test]
+    fn header_drops_the_name_before_the_subscribers() {
+        let pieces = [
+            " NovaMind",
+            "  day 46/500",
+            " · wk 7/72",
+            "   cash $1.23M",
+            " +$12.3k",
+            "   runway to end",
+            "   subs 1.2k",
+        ];
+        let dropped = |width| pieces_before_subscribers(&pieces, width);
+        assert_eq!(dropped(120), [0; 0]);
+        assert_eq!(dropped(80), [0]);
+        assert_eq!(dropped(70), [0, 2]);
+    }
 
     #[test]
     fn progress_text_counts_simulated_days() {

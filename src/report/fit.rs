@@ -275,6 +275,22 @@ impl Fit {
         }
     }
 
+    /// Returns the cheapest plan on sale that can suit an enterprise of the group: no deficit in quality is certain, and
+    /// its quota covers the estimated usage of all seats, in units per day. Without an estimate, its quota covers the
+    /// smallest enterprise.
+    pub fn cheapest_suitable_plan(&self, usage: Option<f64>) -> Option<Plan> {
+        let suits = |plan: &Plan| {
+            let covers_usage = match usage {
+                Some(usage) => self.plans[*plan].quota >= usage,
+                None => self.certain_gap(*plan, FitCriterion::Quota).is_none(),
+            };
+            let is_on_sale = self.plans[*plan].list_price > 0.0;
+            is_on_sale && covers_usage && self.certain_gap(*plan, FitCriterion::Quality).is_none()
+        };
+        let price = |plan: &Plan| self.plans[*plan].list_price;
+        Plan::ALL.into_iter().filter(suits).min_by(|left, right| price(left).total_cmp(&price(right)))
+    }
+
     /// Describes the certain deficits of a plan, and the criteria for which the result is uncertain.
     pub fn describe_gaps(&self, plan: Plan) -> String {
         let plan_fit = &self.plans[plan];

@@ -212,8 +212,8 @@ fn describe_call_differences(
 fn describe_call_difference(call: &CallDifference, notation: DecisionNotation<'_>) -> String {
     match (&call.recorded, &call.edited) {
         (Some(was), Some(is)) => notation.changed_call(call.tool, was, is),
-        (Some(was), None) => format!("{} is skipped", notation.call(call.tool, was)),
-        (None, Some(is)) => format!("{} is added", notation.call(call.tool, is)),
+        (Some(was), None) => format!("{} skipped", notation.call(call.tool, was)),
+        (None, Some(is)) => format!("{} added", notation.call(call.tool, is)),
         (None, None) => notation.name(call.tool).to_owned(),
     }
 }
@@ -428,9 +428,9 @@ mod tests {
         assert_eq!(
             texts,
             [
-                "week 2: set_prices {\"B\":9.5} is added; the run calls set_prices again in week 3 (line 20)",
+                "week 2: set_prices {\"B\":9.5} added; the run calls set_prices again in week 3 (line 20)",
                 "weeks 2 to 4: set_prices {\"B\":10.0} → {\"B\":9.5} (2 calls)",
-                "week 3: set_prices {\"B\":30.0} is skipped (line 20)",
+                "week 3: set_prices {\"B\":30.0} skipped (line 20)",
             ]
         );
     }
@@ -449,10 +449,10 @@ mod tests {
             describe_call_differences(&[&call], |day| day / 7 + 1, DecisionNotation::Words(&names))
         };
         assert_eq!(text(call(Some(30.0), Some(27.0))), "week 2: price B 30 → 27");
-        assert_eq!(text(call(Some(30.0), None)), "week 2: price B 30 is skipped");
+        assert_eq!(text(call(Some(30.0), None)), "week 2: price B 30 skipped");
         assert_eq!(
             text(call(None, Some(27.0))),
-            "week 2: price B 27 is added; your run changes price again in week 3"
+            "week 2: price B 27 added; your run changes price again in week 3"
         );
     }
 

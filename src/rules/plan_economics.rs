@@ -10,6 +10,10 @@ use novamind_session::identifiers::{Group, Plan};
 /// Days per month for estimates.
 const DAYS_PER_MONTH: f64 = 30.0;
 
+/// Mean days since signing from which measured usage is preferred to a market study. The usage rate of an enterprise is
+/// drawn at the deal and again at every bill, so newer seats show a single draw.
+const MIN_MEASURED_DAYS: f64 = 30.0;
+
 /// Prices, quotas and costs of the plans, and the usage per seat of each group.
 #[derive(Debug, Clone, Default)]
 pub struct PlanEconomics {
@@ -43,14 +47,22 @@ impl PlanEconomics {
         }
     }
 
-    /// Returns the usage of a group in units per seat per day, and the source of this figure: the last day, otherwise
-    /// the market study.
+    /// Returns the usage of a group in units per seat per day, and the source of this figure: the last day, or the
+    /// market study if no enterprise of the group used the product or if its seats are new.
     pub fn usage_per_seat(&self, group: &str) -> Option<(f64, String)> {
-        if let Some(units) = self.usage.measured_usage(group) {
-            return Some((units, format!("{group} on the last day")));
+        let study = Group::parse(group).and_then(|group| self.estimated_usage.get(&group).copied());
+        let Some(measured) = self.usage.measured_usage(group) else {
+            return study.map(|(level, units)| (units, format!("market study of {group}, level {level}")));
+        };
+        let days = measured.mean_days_since_signing();
+        let is_new = days < MIN_MEASURED_DAYS;
+        let age = format!("signed {} days ago on average", grouped_number(days, 0));
+        // Without a study, the estimate of a group has a larger error than a single draw.
+        if let Some((level, units)) = study.filter(|(level, _)| is_new && *level > 0) {
+            return Some((units, format!("market study of {group}, level {level}; its seats {age}")));
         }
-        let (level, units) = Group::parse(group).and_then(|group| self.estimated_usage.get(&group))?;
-        Some((*units, format!("market study of {group}, level {level}")))
+        let note = if is_new { format!(", new seats: {age}") } else { String::new() };
+        Some((measured.units_per_seat(), format!("{group} on the last day{note}")))
     }
 
     /// Returns the expected usage of all seats of an enterprise, in units per day.
@@ -144,6 +156,8 @@ pub struct OfferTotals {
     list_shares: Option<(f64, f64)>,
     /// Number of offers that include a plan whose quota does not cover the enterprise's usage.
     pub above_quota: u32,
+    /// Number of offers that include a plan whose estimated compute cost exceeds the payment.
+    pub at_loss: u32,
     /// Number of threads that receive no reply.
     pub skipped: u32,
 }
@@ -170,6 +184,8 @@ impl OfferTotals {
             self.known_margin =
                 (self.known_margin.0 + highest.monthly_revenue, self.known_margin.1 + compute);
         }
+        let is_loss = |line: &OfferLineEconomics| line.margin().is_some_and(|margin| margin < 0.0);
+        self.at_loss += u32::from(lines.iter().any(is_loss));
         self.above_quota += u32::from(lines.iter().any(|line| line.quota_shortfall.is_some()));
         for share in lines.iter().filter_map(OfferLineEconomics::list_share) {
             let (low, high) = self.list_shares.unwrap_or((share, share));
@@ -194,6 +210,9 @@ impl OfferTotals {
                 .margin()
                 .map_or(String::new(), |margin| format!(", margin after compute {}", percent(margin, 0)));
         }
+        if self.at_loss > 0 {
+            words += &format!(", {} at an estimated loss", count(self.at_loss));
+        }
         if self.above_quota > 0 {
             words += &format!(", {} above the quota of an offered plan", count(self.above_quota));
         }
@@ -212,7 +231,8 @@ mod tests {
     fn economics() -> PlanEconomics {
         let row = |group: &str, seats: i64, units: i64| {
             let text = |text: &str| Cell::Text(text.to_owned());
-            vec![text(group), text("B"), Cell::Integer(1), Cell::Integer(seats), Cell::Integer(units)]
+            let cells = [1, seats, units, 0, 30 * seats].map(Cell::Integer);
+            [text(group), text("B")].into_iter().chain(cells).collect::<Vec<_>>()
         };
         let rows = vec![row("E1", 50, 1000), row("S1", 10, 900), row("E1", 50, 3000)];
         let studied = Group::parse("E2").map(|group| (group, (1, 25.0)));
@@ -231,6 +251,25 @@ mod tests {
         assert_eq!(economics.usage_per_seat("E1"), Some((40.0, "E1 on the last day".to_owned())));
         assert_eq!(economics.usage_per_seat("E2"), Some((25.0, "market study of E2, level 1".to_owned())));
         assert_eq!(economics.usage_per_seat("D_E01"), None);
+    }
+
+    #[test]
+    fn study_is_preferred_while_measured_seats_are_new() {
+        let mut economics = economics();
+        let row = vec![Cell::Text("E1".to_owned()), Cell::Text("B".to_owned())];
+        let cells = [1, 100, 3000, 0, 200].map(Cell::Integer);
+        let rows = vec![row.into_iter().chain(cells).collect()];
+        economics.usage = SeatUsage::from_rows(&QueryResult { rows, ..QueryResult::default() });
+        let group = Group::parse("E1").expect("a group");
+        let measured = "E1 on the last day, new seats: signed 2 days ago on average";
+        for (study, units, source) in [
+            (None, 30.0, measured),
+            (Some((0, 90.0)), 30.0, measured),
+            (Some((2, 65.0)), 65.0, "market study of E1, level 2; its seats signed 2 days ago on average"),
+        ] {
+            economics.estimated_usage = study.map(|study| (group, study)).into_iter().collect();
+            assert_eq!(economics.usage_per_seat("E1"), Some((units, source.to_owned())));
+        }
     }
 
     #[test]
@@ -263,7 +302,7 @@ mod tests {
         }
         let text = totals.describe(false);
         assert!(
-            text.contains("at most $4,600 a month, prices 25% to 90% of list, margin after compute 48%"),
+            text.contains("at most $4,600 a month, prices 25% to 90% of list, margin after compute 48%, 1 at an estimated loss"),
             "{text}"
         );
         assert!(!totals.describe(true).contains("a month"));

@@ -23,7 +23,8 @@ macro_rules! readings {
 readings! {
     Subscribers "readings/subscribers" "Active subscriptions: group, plan, customers, seats, dollars per month, \
          customers active for 30 days."
-    Usage "readings/usage" "Usage of the last day: group, plan, users, seats, units."
+    Usage "readings/usage" "Usage of the last day: group, plan, users, seats, units, dollars per month, days since signing times \
+         seats."
     Arrivals "readings/arrivals" "Leads in recent weeks: week, group, source, leads, conversions."
     Departures "readings/departures" "Cancellations in recent weeks: week, group, cancellations, cancellations of \
          customers active 30 days before."

@@ -221,7 +221,7 @@ fn tour_is_offered_only_in_its_run() {
 fn baseline_run_has_explanations_but_no_tour() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::start(runs.path(), (120, 40));
-    console.press("n up up up up up up left down down down down down 'P01' down enter");
+    console.press("n up up up up up up left down down down down down enter 'P01' enter down enter");
     console.assert_shows("BASELINE");
     console.press(": 'tour' enter");
     console.assert_shows("baseline runs have no tour");

@@ -81,6 +81,15 @@ impl App {
         }
     }
 
+    pub(super) fn return_to_previous_tour_step(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        match run.tour.as_mut().map(|tour| tour.go_back(&run.company)) {
+            Some(true) => {}
+            Some(false) => self.show_error("this is the first step of the tour"),
+            None => self.show_error("no tour is shown"),
+        }
+    }
+
     pub(super) fn close_tour(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         if run.tour.take().is_none() {

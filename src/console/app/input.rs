@@ -72,12 +72,22 @@ impl App {
         };
         match action {
             Some(action) => self.handle_action(action),
-            None if !typing && self.keys.meaning(&scopes, &[chord]) == KeyMeaning::Prefix => {
+            None if !typing && self.starts_key_sequence(&scopes, chord) => {
                 self.pending_chords.push(chord);
             }
             None if !typing && self.handle_own_key(&[chord]) => {}
             None => self.forward_key(&key),
         }
+    }
+
+    /// Returns whether a chord starts a key sequence of these scopes. In a dialog, the sequences of screens are read
+    /// completely too, so that no key of them reaches the dialog.
+    fn starts_key_sequence(&self, scopes: &[Scope], chord: Chord) -> bool {
+        let is_prefix = |scopes: &[Scope]| self.keys.meaning(scopes, &[chord]) == KeyMeaning::Prefix;
+        is_prefix(scopes)
+            || !self.layers.is_empty()
+                && self.keys.meaning(scopes, &[chord]) == KeyMeaning::Unbound
+                && is_prefix(&[Scope::Global])
     }
 
     /// Handles a chord that continues a key sequence.
@@ -112,7 +122,7 @@ impl App {
 
     /// Returns an action that works even while a dialog is open. Quitting and redrawing must always be possible.
     fn always_available_action(&self, chord: Chord) -> Option<Action> {
-        let always = [Action::Quit, Action::Redraw, Action::TourSkip, Action::TourClose];
+        let always = [Action::Quit, Action::Redraw, Action::TourSkip, Action::TourBack, Action::TourClose];
         let global = self.keys.action(&[Scope::Global], chord)?;
         (always.contains(&global) && !chord.is_text_input()).then_some(global)
     }
@@ -207,6 +217,7 @@ impl App {
             Action::Quit => return self.quit(),
             Action::Redraw => return self.orders.push(Order::Redraw),
             Action::TourSkip => return self.skip_tour_step(),
+            Action::TourBack => return self.return_to_previous_tour_step(),
             Action::TourClose => return self.close_tour(),
             Action::ExternalEditor => return self.open_external_editor(),
             // Participants can withdraw without answering the open questions.

@@ -71,8 +71,9 @@ impl App {
     pub(super) fn show_causes(&mut self, figure: Figure) {
         let Some((quantity, week)) = figure.week_quantity else {
             let key = self.keys.label(Action::Why).unwrap_or_default();
+            let focus = self.keys.label(Action::FocusNext).unwrap_or_default();
             return self.show_error(format!(
-                "{key} explains weekly cash, leads, sales, churn and service on Overview, Cash, Customers"
+                "{key} explains a weekly figure: select one with {focus} and the arrow keys"
             ));
         };
         self.record_opened_object("figure", figure.title.clone());

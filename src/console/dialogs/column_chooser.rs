@@ -180,7 +180,11 @@ impl Dialog for ColumnChooser {
         canvas.clear(dialog_area, Role::Text);
         let shown = self.layout.visible_columns(&self.columns).len();
         let note = format!("{shown} of {} shown", self.columns.len());
-        let title = format!("Columns of {}", self.title);
+        // A title that starts with a count is not the name of a table.
+        let title = match self.title.starts_with(|first: char| first.is_ascii_digit()) {
+            true => format!("Columns · {}", self.title),
+            false => format!("Columns of {}", self.title),
+        };
         let inside = canvas.draw_pane_frame(dialog_area, &title, &note, true);
         canvas.register_click(dialog_area, Click::Pane(0));
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };

@@ -14,6 +14,7 @@ use claims::insert_figures;
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
+use novamind_worker::company::DisplayedCompany;
 use route::Router;
 use steps::{Goal, TourStep, steps};
 
@@ -28,6 +29,8 @@ const MAX_LINES: usize = 6;
 pub struct Tour {
     /// Index of the current step, or `None` before the first update.
     step: Option<usize>,
+    /// Index of a step that the user went back to. It is shown even if its goal is reached.
+    revisited: Option<usize>,
     /// Whether the content that the current step refers to has been shown.
     is_seen: bool,
     shown: ShownStep,
@@ -50,7 +53,7 @@ impl Tour {
         let company = facts.company;
         let mut at = self.step.unwrap_or_else(|| first_step(facts));
         let is_over = |step: &TourStep| step.is_reached(company) || !step.applies_to(company);
-        while steps().get(at).is_some_and(is_over) {
+        while self.revisited != Some(at) && steps().get(at).is_some_and(is_over) {
             at += 1;
         }
         if self.step != Some(at) {
@@ -67,7 +70,9 @@ impl Tour {
         self.shown = ShownStep {
             title: &step.title,
             position: (number, possible.len()),
-            text: insert_keys(&company.numbers.substitute(&insert_figures(&step.text, company)), keys),
+            text: step.describe_difference(company).unwrap_or_else(|| {
+                insert_keys(&company.numbers.substitute(&insert_figures(&step.text, company)), keys)
+            }),
             route: Router { facts, keys }.route(step),
         };
         true
@@ -76,7 +81,17 @@ impl Tour {
     /// Continues with the next step, whether or not the goal of the current step is reached.
     pub fn continue_to_next_step(&mut self) {
         self.step = Some(self.step.map_or(0, |step| step + 1));
-        self.is_seen = false;
+        (self.is_seen, self.revisited) = (false, None);
+    }
+
+    /// Goes back to the previous possible step. Returns false if the current step is the first one.
+    pub fn go_back(&mut self, company: &DisplayedCompany) -> bool {
+        let before = self.step.unwrap_or(0);
+        let Some(previous) = (0..before).rev().find(|at| steps()[*at].applies_to(company)) else {
+            return false;
+        };
+        (self.step, self.revisited, self.is_seen) = (Some(previous), Some(previous), false);
+        true
     }
 
     /// Returns the keys that the current step shows.
@@ -112,7 +127,7 @@ impl Tour {
         let place = Rect { x: area.x + 2, width: area.width.saturating_sub(2), ..area };
         canvas.draw_text(Rect { height: 1, ..place }, &title, Role::Title);
         let mut right = area.right().saturating_sub(2);
-        for action in [Action::TourClose, Action::TourSkip] {
+        for action in [Action::TourClose, Action::TourSkip, Action::TourBack] {
             let Some(key) = keys.label(action) else { continue };
             let name =
                 if action == Action::TourSkip && self.is_seen { "continue" } else { action.entry().title };

@@ -158,8 +158,11 @@ impl Router<'_> {
         if company.weeks.len() < step.from_week {
             return self.unless_covered(self.week_route());
         }
+        if step.is_reached(company) {
+            return vec![self.group(&[Action::TourSkip], "continue")];
+        }
         match &step.goal {
-            Goal::Set { set, value, cell } => {
+            Goal::Set { set, value, cell, .. } => {
                 let cell = insert_figures(cell, company);
                 self.form_route(*set, value, &cell)
             }
@@ -239,6 +242,9 @@ impl Router<'_> {
             }
             Some(form) if form.typed.is_none() && form.draft.as_deref() == Some(value) => vec![apply],
             Some(form) if form.typed.is_none() && form.is_at_first_cell => vec![edit, apply],
+            Some(form) if form.typed.is_none() && self.facts.scopes.contains(&Scope::Form) => {
+                vec![self.group(&[Action::First], "first row"), edit, apply]
+            }
             _ => self.on_screen(vec![self.palette(tool.name(), "form"), edit, apply]),
         }
     }
@@ -341,7 +347,7 @@ impl Router<'_> {
         ));
         let columns = customers.columns_to_cancellations;
         let sideways = action_for_sign(columns, Action::Right, Action::Left);
-        route.extend(self.repeated(sideways, columns.unsigned_abs(), "column left"));
+        route.extend(self.repeated(sideways, columns.unsigned_abs(), "to the column \"left\""));
         route.push(self.group(&[Action::Why], "why"));
         route
     }

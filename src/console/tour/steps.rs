@@ -5,13 +5,17 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::claims::insert_figures;
 use super::route::TourFacts;
 use crate::context::ScreenId;
 use crate::dialogs::DialogContent;
+use novamind_base::formatting::grouped_number;
 use novamind_session::NewRun;
 use novamind_tools::ToolId;
 use novamind_worker::company::DisplayedCompany;
 
+/// Maximum ratio of a value that reaches a goal to the value that the step asks for, and of this value to it.
+const MAX_FACTOR: f64 = 2.0;
 /// Number of days in a week.
 const WEEK_DAYS: u32 = 7;
 /// Week in which the first subscribers can cancel.
@@ -45,8 +49,8 @@ pub(super) struct TourStep {
 #[derive(Debug, Deserialize)]
 #[serde(untagged, deny_unknown_fields)]
 pub(super) enum Goal {
-    /// Set the first cell of a form.
-    Set { set: ToolId, value: String, cell: String },
+    /// Set the first cell of a form, which a path in the arguments of the tool names.
+    Set { set: ToolId, value: String, path: String, cell: String },
     /// Run weeks until this number of weeks has run.
     Weeks { weeks: usize },
     /// Look at something and continue.
@@ -121,10 +125,38 @@ impl TourStep {
     /// Returns whether a step that changes the company has reached its goal. Returns false for steps without a change.
     pub fn is_reached(&self, company: &DisplayedCompany) -> bool {
         match &self.goal {
-            Goal::Set { set, .. } => is_set(*set, company),
+            Goal::Set { value, .. } => {
+                let asked = value.parse::<f64>().unwrap_or(0.0);
+                let least = asked / MAX_FACTOR;
+                self.setting(company).is_some_and(|amount| (least..=asked * MAX_FACTOR).contains(&amount))
+            }
             Goal::Weeks { weeks } => company.weeks.len() >= *weeks,
             Goal::Read { .. } => false,
         }
+    }
+}
+
+impl TourStep {
+    /// Returns the current value of the cell that the step asks for.
+    fn setting(&self, company: &DisplayedCompany) -> Option<f64> {
+        let Goal::Set { set, path, .. } = &self.goal else { return None };
+        let path = insert_figures(path, company);
+        let mut names = path.split('/');
+        let first = company.settings.get(set)?.get(names.next()?)?;
+        names.try_fold(first, |value, name| value.get(name))?.as_f64()
+    }
+
+    /// Describes what differs from the step, if the user set other values with its tool.
+    pub fn describe_difference(&self, company: &DisplayedCompany) -> Option<String> {
+        let Goal::Set { set, value, cell, .. } = &self.goal else { return None };
+        if self.is_reached(company) || !is_set(*set, company) {
+            return None;
+        }
+        let (cell, amount) = (insert_figures(cell, company), self.setting(company).unwrap_or(0.0));
+        Some(format!(
+            "You set something else: {cell} is {}, and this step needs {value}.",
+            grouped_number(amount, 0)
+        ))
     }
 }
 

@@ -250,3 +250,66 @@ fn claims_of_the_tour_are_true_in_its_run() {
     assert!(run.call("set_daily_spend", &settings, Via::Script).is_ok());
     assert!(Sight::Help.dialog().is_some());
 }
+
+#[test]
+fn step_accepts_only_the_value_that_it_asks_for() {
+    let keys = KeyBindings::bundled();
+    let mut run = Session::create(tour_run(), &Configuration::bundled()).expect("a run");
+    let mut tour = Tour { step: Some(3), ..Tour::default() };
+    let mut texts = Vec::new();
+    for prices in [json!({"C": 9}), json!({"A": 90}), json!({"A": 10})] {
+        run.call("set_prices", &prices, Via::Script).expect("prices");
+        let company = DisplayedCompany::from_session(&run);
+        assert!(tour.update(&facts(&company), &keys));
+        texts.push((tour.title(), tour.shown.text.clone()));
+    }
+    assert_eq!(texts[0].0, "A price");
+    assert_eq!(texts[0].1, "You set something else: plan A is 0, and this step needs 9.");
+    assert_eq!(texts[1].1, "You set something else: plan A is 90, and this step needs 9.");
+    assert_eq!(texts[2].0, "A model", "a price close to the proposed one is accepted");
+    let ads = json!({"targeted_spend": {"social_media": {"S1": 5}}});
+    run.call("set_targeted_ad_spend", &ads, Via::Script).expect("ads");
+    let company = DisplayedCompany::from_session(&run);
+    let mut tour = Tour { step: Some(6), ..Tour::default() };
+    assert!(tour.update(&facts(&company), &keys));
+    assert_eq!(tour.shown.text, "You set something else: social_media, S1 is 5, and this step needs 500.");
+}
+
+#[test]
+fn user_can_go_back_to_a_reached_step() {
+    let keys = KeyBindings::bundled();
+    let company = DisplayedCompany::from_session(&played_tour(1));
+    let mut tour = Tour::default();
+    tour.update(&facts(&company), &keys);
+    assert_eq!(tour.title(), "The report");
+    for title in ["A week", "Leads"] {
+        assert!(tour.go_back(&company));
+        assert!(tour.update(&facts(&company), &keys));
+        assert_eq!(tour.title(), title);
+        assert_eq!(tour.key_groups()[0].effect, "continue");
+    }
+    tour.continue_to_next_step();
+    tour.update(&facts(&company), &keys);
+    assert_eq!(tour.title(), "The report", "reached steps are skipped again");
+    let mut tour = Tour::default();
+    let new = new_company();
+    tour.update(&facts(&new), &keys);
+    assert!(!tour.go_back(&new), "the first step");
+}
+
+#[test]
+fn keys_inside_the_form_lead_to_its_first_cell() {
+    let company = new_company();
+    let keys = KeyBindings::bundled();
+    let form = FormFacts { tool: Some(novamind_tools::ToolId::SetPrices), ..FormFacts::default() };
+    let inside = TourFacts {
+        screen: ScreenId::Tools,
+        scopes: vec![Scope::Form, Scope::List, Scope::Global],
+        form: Some(form),
+        ..facts(&company)
+    };
+    let mut tour = Tour { step: Some(3), ..Tour::default() };
+    tour.update(&inside, &keys);
+    let labels: Vec<String> = tour.key_groups().iter().map(KeyGroup::label).collect();
+    assert!(labels[0].ends_with("(first row)") && !labels.concat().contains("set_prices"), "{labels:?}");
+}

@@ -1,8 +1,12 @@
 //! Diagnoses of expiring threads and of churn.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::offer_changes::OfferChange;
 use super::{ActionItem, ActionTarget, DAYS_PER_MONTH, DiagnosisContext, MAX_CHANCE, Problem, RISK_DAYS};
+use crate::fit::{Fit, fits};
 use crate::formatting::{format_money, format_whole, pluralize};
+use novamind_session::WaitingThread;
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tools::ToolId;
 
@@ -38,16 +42,14 @@ pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<Actio
         true => format!("by day {last}"),
         false => format!("by day {last}, the first by day {earliest}"),
     };
-    let lowest =
-        Plan::ALL.into_iter().map(|plan| situation.settings.prices[plan]).filter(|price| *price > 0.0);
-    let lowest = lowest.fold(f64::INFINITY, f64::min);
-    let value = |thread: &novamind_session::WaitingThread| {
-        let price = thread.asked.unwrap_or(if lowest.is_finite() { lowest } else { 0.0 });
-        f64::from(thread.seats) * price
+    let prices = ThreadPrices::new(situation);
+    let value = |thread: &WaitingThread| {
+        prices.price(thread).map_or(0.0, |(price, _)| f64::from(thread.seats) * price)
     };
-    let a_month: f64 = waiting.iter().map(value).sum();
-    let seats: u32 = waiting.iter().map(|thread| thread.seats).sum();
-    let first = waiting.iter().max_by(|left, right| value(left).total_cmp(&value(right)))?;
+    // The first thread in order of payments, then of seats.
+    let first = waiting
+        .iter()
+        .max_by(|left, right| value(left).total_cmp(&value(right)).then(left.seats.cmp(&right.seats)))?;
     let (who, fate) = match waiting.len() {
         1 => (
             format!("{} waits", situation.session.company().company_names().name_with_number(first.customer)),
@@ -57,16 +59,80 @@ pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<Actio
     };
     Some(ActionItem {
         problem: Problem::Threads,
-        text: format!(
-            "{who} for an answer ({}, {} a month at the requested or lowest list price). Without an answer, {fate} {by}.",
-            pluralize(seats, "seat"),
-            format_money(a_month)
-        ),
+        text: format!("{who} for an answer ({}). Without an answer, {fate} {by}.", prices.describe(waiting)),
         proposal: None,
         target: ActionTarget::Thread(first.thread),
-        at_risk: a_month * RISK_DAYS / DAYS_PER_MONTH,
+        at_risk: prices.monthly_payments(waiting) * RISK_DAYS / DAYS_PER_MONTH,
         is_urgent: true,
     })
+}
+
+/// Prices at which payments of waiting enterprises are estimated.
+struct ThreadPrices {
+    fits: Vec<Fit>,
+    /// Estimated usage of each known group, units per seat per day.
+    usage: BTreeMap<Group, f64>,
+    /// Lowest list price, which ranks the item if no price is known.
+    lowest_list_price: f64,
+}
+
+impl ThreadPrices {
+    fn new(situation: &DiagnosisContext<'_>) -> ThreadPrices {
+        let on_sale =
+            Plan::ALL.into_iter().map(|plan| situation.settings.prices[plan]).filter(|price| *price > 0.0);
+        let estimates = situation.session.company().estimates().into_iter();
+        ThreadPrices {
+            fits: fits(situation.session),
+            usage: estimates.map(|estimates| (estimates.group, estimates.usage)).collect(),
+            lowest_list_price: on_sale.reduce(f64::min).unwrap_or(1.0),
+        }
+    }
+
+    /// Returns the price that an enterprise requested, otherwise the list price of the cheapest plan that can suit it,
+    /// with this plan. Returns `None` if neither exists.
+    fn price(&self, thread: &WaitingThread) -> Option<(f64, Option<Plan>)> {
+        if let Some(asked) = thread.asked {
+            return Some((asked, None));
+        }
+        let group = Group::parse(thread.group)?;
+        let fit = self.fits.iter().find(|fit| fit.group == group)?;
+        let usage = self.usage.get(&group).map(|units| units * f64::from(thread.seats));
+        let plan = fit.cheapest_suitable_plan(usage)?;
+        Some((fit.plans[plan].list_price, Some(plan)))
+    }
+
+    /// Returns the estimated payments of the enterprises with a price, or all payments at the lowest list price if no
+    /// enterprise has a price.
+    fn monthly_payments(&self, waiting: &[WaitingThread]) -> f64 {
+        let payment = |thread: &WaitingThread| Some(self.price(thread)?.0 * f64::from(thread.seats));
+        let known: f64 = waiting.iter().filter_map(payment).sum();
+        let seats: u32 = waiting.iter().map(|thread| thread.seats).sum();
+        if known > 0.0 { known } else { self.lowest_list_price * f64::from(seats) }
+    }
+
+    /// Describes the seats, the estimated payments and the prices of the estimate.
+    fn describe(&self, waiting: &[WaitingThread]) -> String {
+        let seats = pluralize(waiting.iter().map(|thread| thread.seats).sum(), "seat");
+        let prices: Vec<(f64, Option<Plan>)> =
+            waiting.iter().filter_map(|thread| self.price(thread)).collect();
+        let plans: BTreeSet<&str> = prices.iter().filter_map(|(_, plan)| Some(plan.as_ref()?.id())).collect();
+        let plans = match plans.into_iter().collect::<Vec<_>>().as_slice() {
+            [] => String::new(),
+            [plan] => format!("the list price of plan {plan}"),
+            more => format!("the list prices of plans {}", more.join(", ")),
+        };
+        let basis = match (prices.iter().any(|(_, plan)| plan.is_none()), plans.is_empty()) {
+            (true, true) => "requested prices".to_owned(),
+            (true, false) => format!("requested prices, otherwise {plans}"),
+            (false, false) => plans,
+            (false, true) => return format!("{seats}; no price requested, and no plan on sale suits them"),
+        };
+        let others = match waiting.len() - prices.len() {
+            0 => String::new(),
+            others => format!("; {others} named no price, and no plan on sale suits them"),
+        };
+        format!("{seats}, {} a month at {basis}{others}", format_money(self.monthly_payments(waiting)))
+    }
 }
 
 /// Finds groups with more cancellations than chance explains.

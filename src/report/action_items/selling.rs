@@ -49,8 +49,11 @@ pub(super) fn missing_offers(situation: &DiagnosisContext<'_>) -> Option<ActionI
         [one] => (format!("Plan {one}"), "has"),
         more => (format!("Plans {}", more.join(", ")), "have"),
     };
-    let consequence =
-        if all { "Subscribers get nothing for their money" } else { "Subscribers of this plan get nothing" };
+    let consequence = match (all, empty.len()) {
+        (true, _) => "Subscribers get nothing for their money",
+        (false, 1) => "Subscribers of this plan get nothing",
+        (false, _) => "Subscribers of these plans get nothing",
+    };
     Some(ActionItem {
         problem: Problem::NoQuota,
         text: format!("{plans} {verb} a price and a quota of 0 units a day. {consequence}."),

@@ -162,7 +162,10 @@ impl ComparisonView {
             finite.map(|(day, value)| (day, scale * value)).collect()
         };
         let lines: Vec<Curve> = (0..self.comparison.branches.len())
-            .map(|number| Curve::from_points(points(number), Role::Series(number)))
+            .map(|number| {
+                let name = CURVE_NAMES.get(number).copied().unwrap_or_default();
+                Curve::from_points(points(number), Role::Series(number)).with_name(name)
+            })
             .collect();
         let unit = match figure.unit() {
             FigureUnit::Dollars => AxisUnit::Dollars,
@@ -263,6 +266,9 @@ impl ComparisonView {
         texts
     }
 }
+
+/// Names of the curves: the numbers of the branches, as in the list above the chart.
+const CURVE_NAMES: [&str; 10] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9"];
 
 fn is_share(figure: BranchFigure) -> bool {
     matches!(figure.unit(), FigureUnit::Share | FigureUnit::PreciseShare)

@@ -75,13 +75,13 @@ impl BranchesPage {
         DialogResponse::stay_with(vec![Effect::Ask(self.asked.ask(question))])
     }
 
-    fn go_back(&mut self) -> DialogResponse {
+    fn go_back(&mut self, context: &ScreenContext<'_>) -> DialogResponse {
         match self.page {
             BranchesView::Decisions if self.decisions.has_changes() && !self.is_closing => {
                 self.is_closing = true;
-                self.problem = Some(
-                    "Closing the page discards your changes. Press the key again to close it.".to_owned(),
-                );
+                let key = context.keys.label(Action::Close).unwrap_or_default();
+                self.problem =
+                    Some(format!("Closing the page discards your changes. Press {key} again to close it."));
                 DialogResponse::stay()
             }
             BranchesView::Decisions => DialogResponse::close(),
@@ -202,7 +202,7 @@ impl Dialog for BranchesPage {
             (BranchesView::Decisions, action) if self.decisions.input.is_some() => {
                 self.decisions.handle_action(action, context.company);
             }
-            (_, Action::Close | Action::Cancel) => return self.go_back(),
+            (_, Action::Close | Action::Cancel) => return self.go_back(context),
             (BranchesView::Decisions, Action::SimulateBranches) => return self.request_comparison(None),
             (BranchesView::Comparison(_), Action::SimulateFutures) => {
                 return self.request_comparison(Some(FUTURE_COUNT));

@@ -31,7 +31,7 @@ use crate::effect::Effect;
 use novamind_base::formatting::parse_number;
 use novamind_database::QueryResult;
 use novamind_rules::{MIN_TURNS_PARAMETER, SeatUsage, ThreadContext};
-use novamind_session::identifiers::Group;
+use novamind_session::identifiers::{Group, Plan};
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::widgets::Table;
@@ -82,6 +82,9 @@ const THREAD_ACTIONS: [Action; 8] = [
 const NO_THREAD_ERROR: &str = "No thread is selected";
 
 const OFFER_HEIGHT: u16 = 10;
+
+/// Plan of the first offer if nothing shows which plan suits the enterprise.
+const DEFAULT_PLAN: Plan = Plan::B;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum InboxView {
@@ -218,13 +221,44 @@ impl Inbox {
         self.threads.threads.iter().filter(marked).collect()
     }
 
-    fn current_offer(&self) -> OfferDraft {
+    fn current_offer(&self, company: &DisplayedCompany) -> OfferDraft {
         if !self.marked.is_empty() {
-            return self.bulk_offer.clone().unwrap_or_else(OfferDraft::at_list_price);
+            return self.bulk_offer.clone().unwrap_or_else(|| self.initial_bulk_offer(company));
         }
-        let Some(thread) = self.selected_thread() else { return OfferDraft::at_list_price() };
+        let Some(thread) = self.selected_thread() else { return OfferDraft::at_list_price(DEFAULT_PLAN) };
         let offer_draft = self.drafts.get(&thread.number).or(self.last_offer.as_ref()).cloned();
-        offer_draft.unwrap_or_else(|| OfferDraft::initial_for(thread))
+        offer_draft.unwrap_or_else(|| OfferDraft::initial_for(thread, self.suitable_plan(thread, company)))
+    }
+
+    /// Returns the offer to the marked threads until the user changes it: the offer that the user wrote for the selected
+    /// thread, otherwise the only offer written for a marked thread, otherwise the list price of the plan that suits
+    /// most of the enterprises.
+    fn initial_bulk_offer(&self, company: &DisplayedCompany) -> OfferDraft {
+        let targets = self.targets();
+        let written: Vec<&OfferDraft> =
+            targets.iter().filter_map(|thread| self.drafts.get(&thread.number)).collect();
+        let selected = self.selected_thread().filter(|thread| self.marked.contains(&thread.number));
+        let of_selected = selected.and_then(|thread| self.drafts.get(&thread.number));
+        let only = written.first().filter(|first| written.iter().all(|other| other == *first));
+        if let Some(offer) = of_selected.or(only.copied()) {
+            return offer.clone();
+        }
+        let suitable: Vec<Plan> = targets.iter().map(|thread| self.suitable_plan(thread, company)).collect();
+        let count = |plan: &Plan| suitable.iter().filter(|other| *other == plan).count();
+        OfferDraft::at_list_price(Plan::ALL.into_iter().rev().max_by_key(count).unwrap_or(DEFAULT_PLAN))
+    }
+
+    /// Returns the plan that an enterprise named, otherwise the plan of a subscriber, otherwise the cheapest plan whose
+    /// quality and quota can suit the enterprise according to the market study.
+    fn suitable_plan(&self, thread: &Thread, company: &DisplayedCompany) -> Plan {
+        let subscription = self.threads.enterprise(thread.customer);
+        let subscribed = subscription.filter(|enterprise| enterprise.status == "subscribed");
+        let of_market = || {
+            let fit = company.fit(Group::parse(&thread.group)?)?;
+            fit.cheapest_suitable_plan(thread.waiting_thread.as_ref()?.required_quota)
+        };
+        let plan = thread.asked_plan().or_else(|| subscribed.and_then(|enterprise| Plan::parse(&enterprise.plan)));
+        plan.or_else(of_market).unwrap_or(DEFAULT_PLAN)
     }
 
     fn set_offer(&mut self, offer: OfferDraft) {
@@ -232,9 +266,21 @@ impl Inbox {
             _ if !self.marked.is_empty() => self.bulk_offer = Some(offer),
             Some(number) => {
                 self.drafts.insert(number, offer);
+                // The next bulk offer starts from the offer that was written last.
+                self.bulk_offer = None;
             }
             None => {}
         }
+    }
+
+    /// Returns the marked threads for which the user wrote another offer than the bulk offer.
+    fn replaced_drafts(&self, company: &DisplayedCompany) -> Vec<&Thread> {
+        if self.marked.is_empty() {
+            return Vec::new();
+        }
+        let bulk = self.current_offer(company);
+        let is_replaced = |thread: &&Thread| self.drafts.get(&thread.number).is_some_and(|draft| *draft != bulk);
+        self.targets().into_iter().filter(is_replaced).collect()
     }
 
     /// Returns the unsent offers to waiting threads as text, by thread. The bulk offer is returned once
@@ -253,20 +299,21 @@ impl Inbox {
         self.drafts.extend(parsed);
     }
 
-    fn edit_term(&mut self, change: impl FnOnce(&mut offer::OfferTerm)) {
-        let mut offer = self.current_offer();
+    fn edit_term(&mut self, company: &DisplayedCompany, change: impl FnOnce(&mut offer::OfferTerm)) {
+        let mut offer = self.current_offer(company);
         change(&mut offer.0[self.selected_term.min(MAX_TERMS - 1)]);
         self.set_offer(offer);
     }
 
-    fn commit_value(&mut self) -> Vec<Effect> {
+    fn commit_value(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
         let Some(field) = self.value_field.take() else { return Vec::new() };
         match parse_number(field.text()) {
             Some(value) => {
-                self.edit_term(|term| {
+                let plan = self.selected_thread().map(|thread| self.suitable_plan(thread, company));
+                self.edit_term(company, |term| {
                     term.value = value;
                     if term.plan == PlanChoice::Unused {
-                        term.plan = PlanChoice::Fixed(novamind_session::identifiers::Plan::B);
+                        term.plan = PlanChoice::Fixed(plan.unwrap_or(DEFAULT_PLAN));
                     }
                 });
                 Vec::new()
@@ -276,9 +323,9 @@ impl Inbox {
         }
     }
 
-    fn start_typing(&mut self) {
+    fn start_typing(&mut self, company: &DisplayedCompany) {
         if self.selected_thread().is_some() {
-            let value = self.current_offer().0[self.selected_term.min(MAX_TERMS - 1)].value_text();
+            let value = self.current_offer(company).0[self.selected_term.min(MAX_TERMS - 1)].value_text();
             self.value_field = Some(TextField::with_selected_text(value));
             self.focus = InboxPane::Offer;
         }
@@ -306,15 +353,26 @@ impl Inbox {
         self.scroll = 0;
     }
 
-    fn cycle_plan(&mut self) {
-        self.edit_term(offer::OfferTerm::cycle_plan);
+    fn cycle_plan(&mut self, company: &DisplayedCompany) {
+        self.edit_term(company, offer::OfferTerm::cycle_plan);
     }
 
-    fn cycle_basis(&mut self, lists: [f64; 3]) {
-        let term = self.current_offer().0[self.selected_term.min(MAX_TERMS - 1)];
-        let price =
-            self.selected_thread().and_then(|thread| term.price(thread, lists)).map(|(_, price)| price);
-        self.edit_term(|term| term.cycle_basis(price));
+    /// Changes the basis of the selected term. The price stays the same, for the selected thread if possible.
+    fn cycle_basis(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
+        let mut offer = self.current_offer(company);
+        let term = &mut offer.0[self.selected_term.min(MAX_TERMS - 1)];
+        let mut threads = self.targets();
+        let selected = self.selected_thread().map(|thread| thread.number);
+        threads.sort_by_key(|thread| Some(thread.number) != selected);
+        if term.plan == PlanChoice::Unused {
+            return vec![Effect::ShowError("This line has no plan. Choose a plan first.".to_owned())];
+        }
+        if !term.cycle_basis(&threads, list_prices(company)) {
+            let text = "There is no list price and no asked price to compare with. Type a price in dollars.";
+            return vec![Effect::ShowError(text.to_owned())];
+        }
+        self.set_offer(offer);
+        Vec::new()
     }
 }
 
@@ -366,7 +424,7 @@ impl ScreenState for Inbox {
     fn handle_response(&mut self, news: &Response, context: &ScreenContext<'_>) -> Vec<Effect> {
         match news {
             Response::ToolCalled(_, Ok(answer), _) => {
-                let effects = self.handle_send_result(answer);
+                let effects = self.handle_send_result(answer, context.company);
                 self.rules_form = None;
                 self.update_threads(context.company);
                 effects
@@ -421,7 +479,6 @@ impl PaneScreen for Inbox {
         if let Some(effects) = self.handle_outcomes_action(action) {
             return Some(effects);
         }
-        let lists = list_prices(context.company);
         if let Some(ruling) = &mut self.rules_form {
             match action {
                 Action::SendOffer => return Some(self.send_rule_answers(context.company)),
@@ -438,7 +495,7 @@ impl PaneScreen for Inbox {
                 self.value_field = None;
                 return Some(Vec::new());
             }
-            let problem = self.commit_value();
+            let problem = self.commit_value(context.company);
             if !problem.is_empty() || action == Action::Commit {
                 return Some(problem);
             }
@@ -468,9 +525,9 @@ impl PaneScreen for Inbox {
                 }
                 self.set_offer(OfferDraft::at_asked_price());
             }
-            Action::OfferPlan => self.cycle_plan(),
-            Action::OfferBasis => self.cycle_basis(lists),
-            Action::OfferPrice => self.start_typing(),
+            Action::OfferPlan => self.cycle_plan(context.company),
+            Action::OfferBasis => return Some(self.cycle_basis(context.company)),
+            Action::OfferPrice => self.start_typing(context.company),
             Action::InboxRules => return Some(self.open_rules(context.company)),
             Action::SendOffer => return Some(self.send_offers(context.company)),
             Action::RejectOffer => return Some(self.confirm_rejection(context.company)),

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use novamind_base::formatting::dollars_and_cents;
 use novamind_database::{Cell, QueryResult, number_at, text_at};
 use novamind_rules::{LossCause, LostThread, Subscription, ThreadContext, Turn, first_plan_in};
 use novamind_session::EnterpriseNames;
@@ -87,7 +88,9 @@ impl Thread {
         if let Some(thread_context) = &self.waiting_thread {
             return Some((thread_context.asked_plan, thread_context.waiting.asked?));
         }
-        let turn = self.messages.iter().rev().find(|turn| turn.price.is_some())?;
+        // The last message of an accepted thread repeats the price of the accepted offer.
+        let asks = |turn: &&Turn| turn.price.is_some() && turn.closing_reason.is_empty();
+        let turn = self.messages.iter().rev().find(asks)?;
         Some((first_plan_in(&turn.text).or_else(|| self.single_offered_plan()), turn.price?))
     }
 
@@ -131,9 +134,21 @@ pub struct Enterprise {
     pub since_day: u32,
     /// Day on which the subscription ended.
     pub end_day: Option<u32>,
+    /// Day of the last deal of a subscriber.
+    pub deal_day: Option<u32>,
 }
 
 impl Enterprise {
+    /// Describes the plan and the price of a subscriber, the day of the deal about them, and the first day of the
+    /// subscription if it is earlier.
+    pub fn describe_terms(&self) -> String {
+        let terms = format!("plan {} at {}", self.plan, dollars_and_cents(self.price));
+        match self.deal_day.filter(|day| *day > self.since_day) {
+            Some(day) => format!("{terms} since the deal of day {day}; subscriber since day {}", self.since_day),
+            None => format!("{terms} since day {}", self.since_day),
+        }
+    }
+
     fn subscription(&self) -> Subscription {
         Subscription {
             status: self.status.clone(),
@@ -254,6 +269,9 @@ fn parse_threads(rows: &QueryResult) -> BTreeMap<u32, Thread> {
 fn parse_enterprises(rows: &QueryResult) -> BTreeMap<u32, Enterprise> {
     let firm = |row: &Vec<Cell>| {
         let text = |at: usize| text_at(row, at).to_owned();
+        let day = |at: usize| {
+            row.get(at).filter(|cell| !matches!(cell, Cell::Null)).map(|_| number_at(row, at) as u32)
+        };
         let trade = format!("{} {}", text_at(row, 3), text_at(row, 2)).trim().to_owned();
         let firm = Enterprise {
             group: text(1),
@@ -263,10 +281,8 @@ fn parse_enterprises(rows: &QueryResult) -> BTreeMap<u32, Enterprise> {
             plan: text(8),
             price: number_at(row, 9),
             since_day: number_at(row, 10) as u32,
-            end_day: row
-                .get(11)
-                .filter(|cell| !matches!(cell, Cell::Null))
-                .map(|_| number_at(row, 11) as u32),
+            end_day: day(11),
+            deal_day: day(12),
         };
         (number_at(row, 0) as u32, firm)
     };

@@ -90,27 +90,72 @@ impl OfferTerm {
         };
     }
 
-    /// Selects the next price basis and resets the value, because a value in dollars is not valid in percent.
-    pub fn cycle_basis(&mut self, price: Option<f64>) {
-        (self.basis, self.value) = match self.basis {
-            PriceBasis::ListPrice => (PriceBasis::AskedPrice, self.value),
-            PriceBasis::AskedPrice => (PriceBasis::Dollars, price.unwrap_or(0.0)),
-            PriceBasis::Dollars => (PriceBasis::ListPrice, 100.0),
+    /// Selects the next price basis that has a reference price for one of the threads, and converts the value, so that
+    /// the price for this thread stays the same. Returns whether the basis changed.
+    pub fn cycle_basis(&mut self, threads: &[&Thread], lists: [f64; 3]) -> bool {
+        let bases = match self.basis {
+            PriceBasis::ListPrice => [PriceBasis::AskedPrice, PriceBasis::Dollars],
+            PriceBasis::AskedPrice => [PriceBasis::Dollars, PriceBasis::ListPrice],
+            PriceBasis::Dollars => [PriceBasis::ListPrice, PriceBasis::AskedPrice],
         };
+        let converted = |basis: PriceBasis| {
+            let value = |thread: &&Thread| {
+                let unit = OfferTerm { basis, value: 1.0, ..*self }.reference(thread, lists)?;
+                Some(self.exact_price(thread, lists)? / unit)
+            };
+            Some((basis, threads.iter().find_map(value)?))
+        };
+        let Some((basis, value)) = bases.into_iter().find_map(converted) else { return false };
+        (self.basis, self.value) = (basis, value);
+        true
+    }
+
+    /// Returns the price of one unit of the value for a thread, or `None` if there is no reference price.
+    fn reference(&self, thread: &Thread, lists: [f64; 3]) -> Option<f64> {
+        let unit = match self.basis {
+            PriceBasis::Dollars => 1.0,
+            PriceBasis::ListPrice => lists[self.resolve_plan(thread)? as usize] / 100.0,
+            PriceBasis::AskedPrice => thread.asked_price()?.1 / 100.0,
+        };
+        (unit > 0.0).then_some(unit)
+    }
+
+    fn resolve_plan(&self, thread: &Thread) -> Option<Plan> {
+        match self.plan {
+            PlanChoice::Unused => None,
+            PlanChoice::Fixed(plan) => Some(plan),
+            PlanChoice::NamedByCustomer => thread.asked_plan(),
+        }
+    }
+
+    /// Returns the price before it is rounded to cents.
+    fn exact_price(&self, thread: &Thread, lists: [f64; 3]) -> Option<f64> {
+        self.resolve_plan(thread)?;
+        Some(self.value * self.reference(thread, lists)?)
+    }
+
+    /// Describes a used term: `plan B at 90% of the list price`.
+    fn describe(&self) -> Option<String> {
+        let plan = match self.plan {
+            PlanChoice::Unused => return None,
+            PlanChoice::Fixed(plan) => format!("plan {plan}"),
+            PlanChoice::NamedByCustomer => "the plan that each named".to_owned(),
+        };
+        let value = self.value_text();
+        Some(match self.basis {
+            PriceBasis::Dollars => format!("{plan} at ${value}"),
+            PriceBasis::ListPrice => format!("{plan} at {value}% of the list price"),
+            PriceBasis::AskedPrice => format!("{plan} at {value}% of the asked price"),
+        })
     }
 
     /// Returns the plan and price for a thread, or `None` if the term is unused or has no reference price.
     pub fn price(&self, thread: &Thread, lists: [f64; 3]) -> Option<(Plan, f64)> {
-        let asked = thread.asked_price();
-        let plan = match self.plan {
-            PlanChoice::Unused => return None,
-            PlanChoice::Fixed(plan) => plan,
-            PlanChoice::NamedByCustomer => thread.asked_plan()?,
-        };
+        let plan = self.resolve_plan(thread)?;
         let price = match self.basis {
             PriceBasis::Dollars => self.value,
             PriceBasis::ListPrice => lists[plan as usize] * self.value / 100.0,
-            PriceBasis::AskedPrice => asked?.1 * self.value / 100.0,
+            PriceBasis::AskedPrice => thread.asked_price()?.1 * self.value / 100.0,
         };
         Some((plan, (price * 100.0).round() / 100.0))
     }
@@ -121,8 +166,14 @@ impl OfferTerm {
 pub struct OfferDraft(pub [OfferTerm; MAX_TERMS]);
 
 impl OfferDraft {
-    pub fn at_list_price() -> OfferDraft {
-        OfferDraft([OfferTerm { plan: PlanChoice::Fixed(Plan::B), ..UNUSED_TERM }, UNUSED_TERM, UNUSED_TERM])
+    /// Returns an offer of a plan at its list price.
+    pub fn at_list_price(plan: Plan) -> OfferDraft {
+        OfferDraft([OfferTerm { plan: PlanChoice::Fixed(plan), ..UNUSED_TERM }, UNUSED_TERM, UNUSED_TERM])
+    }
+
+    /// Describes the used terms.
+    pub fn describe(&self) -> String {
+        self.0.iter().filter_map(OfferTerm::describe).collect::<Vec<_>>().join(", and ")
     }
 
     /// Returns the used terms as text. [`OfferDraft::parse`] reads the text.
@@ -149,17 +200,11 @@ impl OfferDraft {
         ])
     }
 
-    /// Returns the initial offer to an enterprise: the asked price, otherwise the list price of the plan that the
-    /// enterprise asks about.
-    pub fn initial_for(thread: &Thread) -> OfferDraft {
+    /// Returns the initial offer to an enterprise: the asked price, otherwise the list price of a plan.
+    pub fn initial_for(thread: &Thread, plan: Plan) -> OfferDraft {
         match (thread.asked_plan(), thread.asked_price()) {
             (Some(_), Some(_)) => OfferDraft::at_asked_price(),
-            (Some(plan), None) => OfferDraft([
-                OfferTerm { plan: PlanChoice::Fixed(plan), ..UNUSED_TERM },
-                UNUSED_TERM,
-                UNUSED_TERM,
-            ]),
-            (None, _) => OfferDraft::at_list_price(),
+            _ => OfferDraft::at_list_price(plan),
         }
     }
 
@@ -201,7 +246,7 @@ mod tests {
             UNUSED_TERM,
         ]);
         assert_eq!(offer.to_text(), "C 38.25 $ + theirs 90 % ask");
-        for offer in [offer, OfferDraft::at_list_price(), OfferDraft::at_asked_price()] {
+        for offer in [offer, OfferDraft::at_list_price(Plan::B), OfferDraft::at_asked_price()] {
             assert_eq!(OfferDraft::parse(&offer.to_text()), Some(offer));
         }
         for text in ["", "B", "B x % list", "D 1 $", "A 1 $ + A 1 $ + A 1 $ + A 1 $"] {
@@ -227,8 +272,8 @@ mod tests {
         let (asking, silent) = (waiting_thread(), Thread::default());
         assert_eq!(OfferDraft::at_asked_price().resolve(&asking, LIST_PRICES), Ok(vec![(Plan::A, 20.01)]));
         assert!(OfferDraft::at_asked_price().resolve(&silent, LIST_PRICES).is_err());
-        assert_eq!(OfferDraft::at_list_price().resolve(&silent, LIST_PRICES), Ok(vec![(Plan::B, 32.0)]));
-        let mut offer = OfferDraft::at_list_price();
+        assert_eq!(OfferDraft::at_list_price(Plan::B).resolve(&silent, LIST_PRICES), Ok(vec![(Plan::B, 32.0)]));
+        let mut offer = OfferDraft::at_list_price(Plan::B);
         offer.0[0].value = 90.0;
         offer.0[1] =
             OfferTerm { plan: PlanChoice::Fixed(Plan::C), basis: PriceBasis::AskedPrice, value: 150.0 };
@@ -254,10 +299,27 @@ mod tests {
             term.cycle_plan();
             assert_eq!(term.plan_label(), words);
         }
-        for (words, value) in [("% ask", 100.0), ("$", 28.5), ("% list", 100.0)] {
-            term.cycle_basis(Some(28.5));
-            assert_eq!((term.basis.label(), term.value), (words, value));
+        assert!(!term.cycle_basis(&[&waiting_thread()], LIST_PRICES), "an unused term has no price");
+        assert!(OfferDraft::at_list_price(Plan::B).is_reusable());
+    }
+
+    #[test]
+    fn changing_the_basis_keeps_the_price() {
+        let (asking, silent) = (waiting_thread(), Thread::default());
+        let term = |plan| OfferTerm { plan: PlanChoice::Fixed(plan), ..UNUSED_TERM };
+        let mut plan_b = term(Plan::B);
+        for (basis, value) in [("% ask", 32.0 / 0.2001), ("$", 32.0), ("% list", 100.0)] {
+            assert!(plan_b.cycle_basis(&[&silent, &asking], LIST_PRICES));
+            assert_eq!(plan_b.basis.label(), basis);
+            assert!((plan_b.value - value).abs() < 1e-9, "{basis} {}", plan_b.value);
+            assert_eq!(plan_b.price(&asking, LIST_PRICES), Some((Plan::B, 32.0)));
         }
-        assert!(OfferDraft::at_list_price().is_reusable());
+        for basis in ["$", "% list"] {
+            assert!(plan_b.cycle_basis(&[&silent], LIST_PRICES), "an enterprise without an asked price");
+            assert_eq!((plan_b.basis.label(), plan_b.price(&silent, LIST_PRICES)), (basis, Some((Plan::B, 32.0))));
+        }
+        let mut unpriced = OfferTerm { basis: PriceBasis::Dollars, value: 48.0, ..term(Plan::C) };
+        assert!(!unpriced.cycle_basis(&[&silent], LIST_PRICES), "48 dollars are never 48 percent");
+        assert_eq!((unpriced.basis, unpriced.value), (PriceBasis::Dollars, 48.0));
     }
 }

@@ -62,9 +62,9 @@ impl Pane<Inbox> for OfferPane {
             }
             Action::First => inbox.selected_term = 0,
             Action::Last => inbox.selected_term = MAX_TERMS - 1,
-            Action::Open => inbox.start_typing(),
-            Action::Right => inbox.cycle_plan(),
-            Action::Left => inbox.cycle_basis(list_prices(context.company)),
+            Action::Open => inbox.start_typing(context.company),
+            Action::Right => inbox.cycle_plan(context.company),
+            Action::Left => return inbox.cycle_basis(context.company),
             Action::Close => inbox.focus = inbox.left_pane(),
             _ => {}
         }
@@ -94,11 +94,11 @@ impl Pane<Inbox> for OfferPane {
         }
     }
 
-    fn handle_click(&self, inbox: &mut Inbox, row: usize, _: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, inbox: &mut Inbox, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let again = inbox.selected_term == row;
         inbox.selected_term = row.min(MAX_TERMS - 1);
         if again {
-            inbox.start_typing();
+            inbox.start_typing(context.company);
         }
         Vec::new()
     }
@@ -131,7 +131,7 @@ impl Pane<Inbox> for OfferPane {
         if inbox.selected_thread().is_none() && !batch {
             return;
         }
-        let offer = inbox.current_offer();
+        let offer = inbox.current_offer(context.company);
         let mut rows = row_rects(inside);
         if let Some(row) = rows.next() {
             canvas.draw_text(row, &column_heads(inside.width, batch), Role::Header);
@@ -215,7 +215,7 @@ fn offer_notes(
     };
     if width >= MIN_FULL_WIDTH {
         let text = format!("compute est.: {} units/seat/day, {source}", grouped_number(units, 0));
-        notes.push((text, Role::Dim));
+        notes.extend(wrap(&text, width as usize).into_iter().map(|line| (line, Role::Dim)));
         return notes;
     }
     for line in priced {

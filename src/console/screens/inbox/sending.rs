@@ -9,7 +9,7 @@ use super::model::{Thread, ThreadState};
 use super::{Inbox, list_prices};
 use crate::context::Figure;
 use crate::effect::Effect;
-use novamind_base::formatting::dollars_and_cents;
+use novamind_base::formatting::{dollars_and_cents, percent};
 use novamind_rules::{OfferLineEconomics, OfferTotals, PlanEconomics};
 use novamind_session::identifiers::Plan;
 use novamind_tools::{Answer, DealResult, ToolId};
@@ -18,6 +18,9 @@ use novamind_worker::company::DisplayedCompany;
 
 const SEND_TOOL: ToolId = ToolId::SendEnterpriseDeal;
 const REJECT_TOOL: ToolId = ToolId::RejectEnterpriseDeal;
+
+/// Maximum number of enterprises that a confirmation names.
+const MAX_NAMED: usize = 4;
 
 /// A thread with its planned offer, or the reason why no offer is sent.
 pub(super) type PlannedOffer<'a> = (&'a Thread, Result<Vec<(Plan, f64)>, String>);
@@ -73,7 +76,7 @@ pub(super) fn offer_economics(
 impl Inbox {
     /// Returns the planned offer of every recipient.
     pub(super) fn planned_offers(&self, company: &DisplayedCompany) -> Vec<PlannedOffer<'_>> {
-        let (offer, lists) = (self.current_offer(), list_prices(company));
+        let (offer, lists) = (self.current_offer(company), list_prices(company));
         self.targets().into_iter().map(|thread| (thread, offer.resolve(thread, lists))).collect()
     }
 
@@ -101,9 +104,34 @@ impl Inbox {
         let economics = plan_economics(company, &self.usage);
         let text = match sent.len() {
             1 => single_offer_text(first, offers, &economics),
-            _ => format!("{}. Each offer uses up a turn.", summary(&planned, &economics)),
+            _ => self.bulk_offer_text(&planned, &economics, company),
         };
         vec![Effect::ConfirmCall { tool: SEND_TOOL, arguments, text }]
+    }
+
+    /// Describes a bulk offer before it is sent: its terms, its totals, the offers that lose money, and the offers that
+    /// it replaces.
+    fn bulk_offer_text(
+        &self,
+        planned: &[PlannedOffer<'_>],
+        economics: &PlanEconomics,
+        company: &DisplayedCompany,
+    ) -> String {
+        let terms = self.current_offer(company).describe();
+        let mut lines = vec![
+            format!("{}. Each offer uses up a turn.", summary(planned, economics)),
+            format!("All receive {terms}."),
+        ];
+        let losses: Vec<String> = planned.iter().filter_map(|offer| describe_loss(offer, economics)).collect();
+        if !losses.is_empty() {
+            lines.push(format!("Estimated loss after compute: {}.", list_first(&losses)));
+        }
+        let replaced: Vec<String> =
+            self.replaced_drafts(company).into_iter().map(Thread::customer_label).collect();
+        if !replaced.is_empty() {
+            lines.push(format!("It replaces what you wrote for {}.", list_first(&replaced)));
+        }
+        lines.join("\n")
     }
 
     /// Requests confirmation before the threads are ended.
@@ -136,14 +164,14 @@ impl Inbox {
     }
 
     /// Clears the drafts and marks of all processed threads.
-    pub(super) fn handle_send_result(&mut self, answer: &Answer) -> Vec<Effect> {
+    pub(super) fn handle_send_result(&mut self, answer: &Answer, company: &DisplayedCompany) -> Vec<Effect> {
         let (offered, results) = match answer {
             Answer::SendEnterpriseDeal(answer) => (true, &answer.results),
             Answer::RejectEnterpriseDeal(answer) => (false, &answer.results),
             _ => return Vec::new(),
         };
         let done: BTreeSet<u32> = results.iter().filter_map(DealResult::sent_customer).collect();
-        if offered && self.marked.is_empty() && self.current_offer().is_reusable() {
+        if offered && self.marked.is_empty() && self.current_offer(company).is_reusable() {
             self.last_offer = self
                 .selected_thread()
                 .and_then(|thread| self.drafts.get(&thread.number))
@@ -152,7 +180,9 @@ impl Inbox {
         }
         let processed_threads = self.threads.threads.iter().filter(|thread| done.contains(&thread.customer));
         for number in processed_threads.map(|thread| thread.number).collect::<Vec<_>>() {
-            self.marked.remove(&number);
+            if self.marked.remove(&number) && self.marked.is_empty() {
+                self.bulk_offer = None;
+            }
             self.drafts.remove(&number);
         }
         let failed = results.len() - done.len();
@@ -189,6 +219,26 @@ fn single_offer_text(thread: &Thread, offers: &[(Plan, f64)], economics: &PlanEc
             .to_owned(),
     });
     lines.join("\n")
+}
+
+/// Describes the lines of an offer whose estimated compute cost exceeds the payment, or returns `None` if there are none.
+fn describe_loss((thread, offers): &PlannedOffer<'_>, economics: &PlanEconomics) -> Option<String> {
+    let lines = offer_economics(thread, offers.as_ref().ok()?, economics);
+    let loss = |line: &OfferLineEconomics| {
+        let margin = line.margin().filter(|margin| *margin < 0.0)?;
+        Some(format!("{} {} ({})", line.plan, dollars_and_cents(line.price), percent(margin, 0)))
+    };
+    let losses: Vec<String> = lines.iter().filter_map(loss).collect();
+    (!losses.is_empty()).then(|| format!("{} {}", thread.customer_label(), losses.join(", ")))
+}
+
+/// Lists the first items, and counts the rest.
+fn list_first(items: &[String]) -> String {
+    let shown = items[..items.len().min(MAX_NAMED)].join("; ");
+    match items.len().saturating_sub(MAX_NAMED) {
+        0 => shown,
+        more => format!("{shown}; and {more} more"),
+    }
 }
 
 /// Describes the totals of the planned offers in one line.

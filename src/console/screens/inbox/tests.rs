@@ -238,14 +238,14 @@ fn answering_a_thread_selects_the_next_one() {
 fn draft_is_kept_for_its_thread() {
     let (mut screen, company) = crowded_screen();
     press(&mut screen, &company, "e '95' down");
-    assert_eq!(screen.current_offer().0[0].value, 95.0);
+    assert_eq!(screen.current_offer(&company).0[0].value, 95.0);
     press(&mut screen, &company, "esc down");
-    assert_ne!(screen.current_offer().0[0].value, 95.0);
+    assert_ne!(screen.current_offer(&company).0[0].value, 95.0);
     press(&mut screen, &company, "up");
-    assert_eq!(screen.current_offer().0[0].value, 95.0);
+    assert_eq!(screen.current_offer(&company).0[0].value, 95.0);
     assert!(screen.has_unsent_text());
     press(&mut screen, &company, "e '7' esc");
-    assert_eq!(screen.current_offer().0[0].value, 95.0, "cancelled input is discarded");
+    assert_eq!(screen.current_offer(&company).0[0].value, 95.0, "cancelled input is discarded");
     let (effects, _) = press(&mut screen, &company, "enter 'x'");
     assert!(matches!(&effects[..], [Effect::ShowError(_)]) && screen.value_field.is_some());
 }
@@ -341,7 +341,7 @@ fn answered_enterprise_stays_in_the_list() {
         panic!("no call")
     };
     assert!(text.starts_with(&format!("Offer to {}, ", first.customer_label())), "{text}");
-    assert!(text.contains("plan B at $32.00 per seat: ") && text.contains("cannot be taken back"), "{text}");
+    assert!(text.contains("plan C at $55.00 per seat: ") && text.contains("cannot be taken back"), "{text}");
     session.call(tool, arguments, Via::Form).expect("sent");
     let after = DisplayedCompany::from_session(&session);
     let mut screen: Inbox = loaded_screen(&mut session, &after);
@@ -349,7 +349,7 @@ fn answered_enterprise_stays_in_the_list() {
     handle_action(&mut screen, Action::NextThreadView, &after);
     let thread = screen.selected_thread().expect("the answered thread");
     assert_eq!((thread.customer, thread.state), (first.customer, ThreadState::WaitingForCustomer));
-    assert_eq!(thread.last_offer(), [(Plan::B, 32.0)]);
+    assert_eq!(thread.last_offer(), [(Plan::C, 55.0)]);
     assert_eq!(thread.seats, first.seats);
     let effects = handle_action(&mut screen, Action::SendOffer, &after);
     assert!(
@@ -363,7 +363,7 @@ fn offer_shows_margin_and_source_of_usage() {
     let company = DisplayedCompany::from_session(&session);
     let mut screen: Inbox = loaded_screen(&mut session, &company);
     let thread = screen.selected_thread().expect("a thread").clone();
-    let money = offer_economics(&thread, &[(Plan::B, 32.0)], &plan_economics(&company, &screen.usage))[0];
+    let money = offer_economics(&thread, &[(Plan::C, 55.0)], &plan_economics(&company, &screen.usage))[0];
     let margin = novamind_base::formatting::percent(money.margin().expect("a margin"), 0);
     let compute = novamind_base::formatting::dollars(money.compute_cost.expect("compute"));
     let text = screen_text(&screen, &company, 120, 37);
@@ -372,7 +372,7 @@ fn offer_shows_margin_and_source_of_usage() {
     }
     assert!(screen_text(&screen, &company, 200, 57).contains("vs. ask"));
     let small = screen_text(&screen, &company, 80, 21);
-    assert!(small.contains(&format!("B est. compute {compute}/mo, margin {margin}")), "{small}");
+    assert!(small.contains(&format!("C est. compute {compute}/mo, margin {margin}")), "{small}");
     let keys = KeyBindings::bundled();
     let context = ScreenContext { company: &company, keys: &keys, page_rows: 20 };
     for focus in 0..Screen::pane_count(&screen) {
@@ -520,4 +520,120 @@ fn thousands_of_marked_threads_are_answered_at_once() {
     let next = screen.table.visible_rows().iter().filter_map(|row| screen.thread_in_row(*row)).nth(1_749);
     apply_answers(&mut screen, &mut company, &sent);
     assert_eq!((screen.rows.len(), screen.selected_thread().map(|thread| thread.number)), (1_751, next));
+}
+
+fn confirmation(effects: &[Effect]) -> &str {
+    match effects {
+        [Effect::ConfirmCall { text, .. }] => text,
+        other => panic!("no tool call: {other:?}"),
+    }
+}
+
+#[test]
+fn offer_written_for_one_thread_becomes_the_bulk_offer() {
+    let (mut screen, company) = crowded_screen_with(3);
+    // Plan C at $45 for the selected thread. Then all threads are marked.
+    press(&mut screen, &company, "p b e '45' enter esc a");
+    let offer = screen.current_offer(&company);
+    assert_eq!(offer.describe(), "plan C at $45.00", "{offer:?}");
+    let (effects, _) = press(&mut screen, &company, "ctrl-s");
+    assert!(sent_deals(&effects).iter().all(|deal| deal[1] == json!([["C", 45.0]])), "{effects:?}");
+    let text = confirmation(&effects);
+    assert!(text.contains("All receive plan C at $45.00.") && !text.contains("replaces"), "{text}");
+    // A change of the bulk offer does not hide that an offer was written for one thread.
+    let written = screen.selected_thread().expect("a thread").customer_label();
+    let (effects, _) = press(&mut screen, &company, "e '50' ctrl-s");
+    let text = confirmation(&effects);
+    assert!(text.contains(&format!("It replaces what you wrote for {written}.")), "{text}");
+    // An offer that is written later starts the next bulk offer.
+    press(&mut screen, &company, "esc esc a e '39' enter esc a");
+    assert_eq!(screen.current_offer(&company).describe(), "plan C at $39.00");
+}
+
+#[test]
+fn first_plan_is_the_one_that_can_suit_the_enterprise() {
+    let (mut screen, company) = crowded_screen_with(2);
+    assert_eq!(screen.current_offer(&company).describe(), "plan B at 100% of the list price");
+    let mut session = session_with_negotiations();
+    let known = DisplayedCompany::from_session(&session);
+    let loaded: Inbox = loaded_screen(&mut session, &known);
+    let thread = loaded.selected_thread().expect("a thread").clone();
+    let fit = known.fit(Group::parse(&thread.group).expect("a group")).expect("a known group");
+    let usage = thread.waiting_thread.as_ref().expect("it waits").required_quota;
+    assert_eq!(Some(loaded.suitable_plan(&thread, &known)), fit.cheapest_suitable_plan(usage));
+    // A subscriber keeps its plan, and a plan that the enterprise named comes first.
+    let subscriber = |screen: &Inbox, company: &DisplayedCompany| {
+        let mut thread = screen.selected_thread().expect("a thread").clone();
+        thread.customer = 1002;
+        screen.suitable_plan(&thread, company)
+    };
+    let (_, _, mut firms) = crowded_company(2);
+    firms.rows[1][7] = Datum::Text("subscribed".to_owned());
+    firms.rows[1][8] = Datum::Text("C".to_owned());
+    let keys = KeyBindings::bundled();
+    screen.apply_rows(
+        Reading::Companies,
+        &firms,
+        &ScreenContext { company: &company, keys: &keys, page_rows: 20 },
+    );
+    assert_eq!(subscriber(&screen, &company), Plan::C);
+}
+
+#[test]
+fn bulk_confirmation_names_offers_at_a_loss() {
+    let mut session = session_with_negotiations();
+    let company = DisplayedCompany::from_session(&session);
+    let mut screen: Inbox = loaded_screen(&mut session, &company);
+    assert!(screen.rows.len() > 1, "several threads");
+    let (effects, _) = press(&mut screen, &company, "a b e '0.01' ctrl-s");
+    let text = confirmation(&effects);
+    let first = screen.targets()[0].customer_label();
+    assert!(text.contains(&format!("Estimated loss after compute: {first} ")), "{text}");
+    assert!(text.contains("$0.01 (-") && text.contains("at an estimated loss"), "{text}");
+    let (effects, _) = press(&mut screen, &company, "e '900' ctrl-s");
+    assert!(!confirmation(&effects).contains("loss"), "{}", confirmation(&effects));
+}
+
+#[test]
+fn terms_name_the_deal_of_the_current_price() {
+    let enterprise = |deal_day| model::Enterprise {
+        plan: "C".to_owned(),
+        price: 55.0,
+        since_day: 46,
+        deal_day,
+        ..model::Enterprise::default()
+    };
+    for deal_day in [None, Some(46)] {
+        assert_eq!(enterprise(deal_day).describe_terms(), "plan C at $55.00 since day 46");
+    }
+    assert_eq!(
+        enterprise(Some(60)).describe_terms(),
+        "plan C at $55.00 since the deal of day 60; subscriber since day 46"
+    );
+}
+
+#[test]
+fn accepted_offer_is_not_an_asked_price() {
+    let turn = |price: Option<f64>, closing_reason: &str| novamind_rules::Turn {
+        number: 2,
+        sender: "customer".to_owned(),
+        text: "We accept plan C at $48.00.".to_owned(),
+        offers: Vec::new(),
+        price,
+        day: 3,
+        closing_reason: closing_reason.to_owned(),
+    };
+    let thread = |messages| Thread { messages, ..Thread::default() };
+    assert_eq!(thread(vec![turn(Some(48.0), "accepted")]).asked_price(), None);
+    let asked = thread(vec![turn(Some(40.0), ""), turn(Some(48.0), "accepted")]);
+    assert_eq!(asked.asked_price().map(|(_, price)| price), Some(40.0));
+}
+
+#[test]
+fn first_turn_names_the_kind_of_the_thread() {
+    let (mut screen, company) = crowded_screen();
+    press(&mut screen, &company, "/ 'reten' enter");
+    let text = screen_text(&screen, &company, 120, 37);
+    assert!(text.contains("considers cancelling its subscription"), "{text}");
+    assert!(!text.contains("asks for an offer"), "{text}");
 }

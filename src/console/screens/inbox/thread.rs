@@ -8,7 +8,6 @@ use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{Pane, PaneBorder, PanePlacement, draw_framed};
-use novamind_base::formatting::dollars_and_cents;
 use novamind_rules::{Turn, format_offer_lines};
 use novamind_tui::canvas::{Canvas, row_rects};
 use novamind_tui::text::{format_count, wrap};
@@ -134,12 +133,7 @@ fn message_lines(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, R
             text += &format!(" · main concern: {concern}");
         }
         let terms = match firm.status.as_str() {
-            "subscribed" => format!(
-                "plan {} at {} since day {}",
-                firm.plan,
-                dollars_and_cents(firm.price),
-                firm.since_day
-            ),
+            "subscribed" => firm.describe_terms(),
             "lead" => format!("not a customer; asked for an offer on day {}", firm.since_day),
             other => format!("{other}; arrived on day {}", firm.since_day),
         };
@@ -159,7 +153,7 @@ fn message_lines(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, R
         };
         let head = format!("day {:>3} {who:<5}", turn.day);
         let indent = " ".repeat(2);
-        let words = message_text(turn);
+        let words = message_text(turn, thread);
         let whole = format!("{head}{words}");
         let mut wrapped = wrap(&whole, width).into_iter();
         lines.extend(wrapped.next().map(|line| (line, role)));
@@ -188,11 +182,15 @@ fn wrap_or_empty(text: &str, width: usize) -> Vec<String> {
     if text.is_empty() { Vec::new() } else { wrap(text, width) }
 }
 
-fn message_text(turn: &Turn) -> String {
+fn message_text(turn: &Turn, thread: &Thread) -> String {
     match (turn.closing_reason.as_str(), turn.sender.as_str()) {
         ("agent_rejected", _) => "ended the thread".to_owned(),
         (_, "agent") => format!("offered {}", format_offer_lines(&turn.offers)),
-        _ if turn.text.is_empty() => "asks for an offer".to_owned(),
+        _ if turn.text.is_empty() => match thread.kind.as_str() {
+            "new_lead" => "asks for an offer".to_owned(),
+            "churn_prevention" => "considers cancelling its subscription".to_owned(),
+            _ => format!("opened the thread: {}", thread.kind_label()),
+        },
         _ => turn.text.clone(),
     }
 }

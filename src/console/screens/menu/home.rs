@@ -36,8 +36,9 @@ impl StartMenu {
             return choices;
         }
         let count = self.runs().len();
-        if let Some(run) = self.latest_unfinished_run() {
-            choices.push((HomeEntry::Continue, "Continue", run_summary(run)));
+        if let Some(run) = self.last_played_run() {
+            let title = if run.ended.is_none() { "Continue" } else { "Open last run" };
+            choices.push((HomeEntry::Continue, title, run_summary(run)));
         }
         let words = match self.tour_run() {
             Some(_) => "Continues its run",
@@ -185,5 +186,5 @@ fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
 }
 
 fn run_summary(run: &RunSummary) -> String {
-    format!("day {} of {} · {}", run.day, run.days, dollars(run.cash))
+    format!("{} · {}", progress_label(run), dollars(run.cash))
 }

@@ -181,8 +181,9 @@ impl StartMenu {
         }
     }
 
-    fn latest_unfinished_run(&self) -> Option<&RunSummary> {
-        self.runs().iter().find(|run| run.ended.is_none() && run.problem.is_none())
+    /// Returns the run that was played last, finished or not.
+    fn last_played_run(&self) -> Option<&RunSummary> {
+        self.runs().iter().find(|run| run.problem.is_none())
     }
 
     /// Returns the id of the unfinished run of the tour, if there is one.
@@ -231,7 +232,7 @@ impl StartMenu {
                 vec![Action::Agree, Action::Decline]
             }
             _ if self.question.is_some() => vec![Action::Confirm, Action::Cancel],
-            MenuPage::Home if self.latest_unfinished_run().is_none() => {
+            MenuPage::Home if self.last_played_run().is_none() => {
                 vec![Action::Open, Action::NewRun, Action::Quit]
             }
             MenuPage::Home => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],
@@ -279,12 +280,17 @@ impl StartMenu {
             (Action::ReplayRun, MenuPage::Home) => return self.replay_effects(self.runs().first()),
             (_, MenuPage::Runs) => return self.handle_runs_action(action),
             (Action::Close | Action::Discard, MenuPage::Compare) => self.page = MenuPage::Runs,
+            (Action::Discard, MenuPage::NewRun) if self.form.is_typing() => self.form.discard_edit(),
             (Action::Close | Action::Discard, _) => self.go_home(),
             (Action::Left | Action::Right, MenuPage::NewRun) => {
                 self.form.change_choice(action == Action::Right);
                 self.form.read_terms(&self.configuration);
             }
-            (Action::Open | Action::Commit, MenuPage::NewRun) => return self.form.accept_row(),
+            (Action::Open | Action::Commit, MenuPage::NewRun) => {
+                let effects = self.form.accept_row();
+                self.form.read_terms(&self.configuration);
+                return effects;
+            }
             (Action::Open, MenuPage::Home) => return self.activate(),
             (Action::Commit, MenuPage::PathForm) => return self.path.open_path(),
             (_, MenuPage::Class) => {
@@ -299,6 +305,7 @@ impl StartMenu {
     }
 
     fn move_selection(&mut self, action: Action) {
+        self.form.commit_edit();
         let (last, page) = (self.last_index(), PAGE_ROWS as usize);
         let place = self.selection_mut();
         *place = match action {
@@ -321,9 +328,9 @@ impl StartMenu {
     }
 
     fn open_latest(&self) -> Vec<Effect> {
-        match self.latest_unfinished_run() {
+        match self.last_played_run() {
             Some(run) => vec![Effect::Request(Request::Open(run.id.clone(), Access::Write))],
-            None => vec![Effect::ShowError("No unfinished run. Start one with n.".to_owned())],
+            None => vec![Effect::ShowError("No run yet. Start one with n.".to_owned())],
         }
     }
 
@@ -403,6 +410,7 @@ impl StartMenu {
             return Vec::new();
         }
         let row = row.min(self.last_index());
+        self.form.commit_edit();
         let again = *self.selection_mut() == row;
         *self.selection_mut() = row;
         if again && !(self.page == MenuPage::NewRun && row < FORM_ROWS.len() - 1) {

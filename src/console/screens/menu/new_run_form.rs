@@ -1,6 +1,6 @@
 //! Form for a new run.
 
-use crossterm::event::KeyEvent;
+use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
 use crate::effect::Effect;
@@ -26,6 +26,8 @@ pub(super) struct NewRunForm {
     cash: TextField,
     participant: TextField,
     pub(super) selected_row: usize,
+    /// Text of the edited field before the edit, or `None` if no field is edited.
+    before_edit: Option<String>,
     pub(super) rejection: Option<String>,
 }
 
@@ -64,6 +66,7 @@ impl NewRunForm {
             cash: TextField::default(),
             participant: TextField::default(),
             selected_row: FORM_ROWS.len() - 1,
+            before_edit: None,
             rejection: None,
         }
     }
@@ -80,9 +83,30 @@ impl NewRunForm {
             scenario.and_then(|scenario| configuration.days_and_cash(&scenario, is_unranked)).ok();
     }
 
-    /// Returns whether the selected row accepts text.
+    /// Returns whether a field is edited.
     pub(super) fn is_typing(&self) -> bool {
-        (2..=5).contains(&self.selected_row)
+        self.before_edit.is_some()
+    }
+
+    /// Starts to edit the field of the selected row, if the row has one. Typing replaces the text.
+    fn start_edit(&mut self) {
+        if let Some(field) = self.field() {
+            let text = field.text().to_owned();
+            *field = TextField::with_selected_text(text.clone());
+            self.before_edit = Some(text);
+        }
+    }
+
+    /// Ends the edit and keeps the text.
+    pub(super) fn commit_edit(&mut self) {
+        self.before_edit = None;
+    }
+
+    /// Ends the edit and restores the text.
+    pub(super) fn discard_edit(&mut self) {
+        if let (Some(text), Some(field)) = (self.before_edit.take(), self.field()) {
+            *field = TextField::with_selected_text(text);
+        }
     }
 
     fn field(&mut self) -> Option<&mut TextField> {
@@ -97,12 +121,22 @@ impl NewRunForm {
 
     pub(super) fn handle_key(&mut self, key: &KeyEvent) {
         self.rejection = None;
+        // A digit starts the edit, as in the forms of tools. Other keys have functions in the list.
+        if !self.is_typing() {
+            if !matches!(key.code, KeyCode::Char(letter) if letter.is_ascii_digit()) {
+                return;
+            }
+            self.start_edit();
+        }
         if let Some(field) = self.field() {
             field.handle_key(key);
         }
     }
 
     pub(super) fn paste(&mut self, text: &str) {
+        if !self.is_typing() {
+            self.start_edit();
+        }
         if let Some(field) = self.field() {
             field.insert(text.trim());
         }
@@ -120,10 +154,15 @@ impl NewRunForm {
         }
     }
 
-    /// Moves to the next row. In the last row, starts the run if the form is valid.
+    /// Edits the field of the selected row, ends the edit, or selects the next choice. In the last row, starts the run if
+    /// the form is valid.
     pub(super) fn accept_row(&mut self) -> Vec<Effect> {
         if self.selected_row < FORM_ROWS.len() - 1 {
-            self.selected_row += 1;
+            match self.is_typing() {
+                true => self.commit_edit(),
+                false if self.field().is_some() => self.start_edit(),
+                false => self.change_choice(true),
+            }
             return Vec::new();
         }
         match (0..FORM_ROWS.len()).find(|row| self.problem(*row).is_some()) {
@@ -185,6 +224,9 @@ impl NewRunForm {
             }
             2 => or(&self.seed, "random"),
             3 => or(&self.days, &default_text(self.scenario_terms.map(|(days, _)| format_days(days)))),
+            4 if parse_number(self.cash.text()).is_some_and(|cash| cash > 0.0) => {
+                (dollars(parse_number(self.cash.text()).unwrap_or_default()), Role::Text)
+            }
             4 => or(&self.cash, &default_text(self.scenario_terms.map(|(_, cash)| dollars(cash)))),
             5 => or(&self.participant, "none"),
             // The last row starts the run and shows the selected mode.
@@ -245,7 +287,9 @@ impl NewRunForm {
         };
         let (value, role) = self.value(at);
         match field {
-            Some(field) if here => field.draw(canvas, Rect { width: FIELD_WIDTH.min(place.width), ..place }),
+            Some(field) if here && self.is_typing() => {
+                field.draw(canvas, Rect { width: FIELD_WIDTH.min(place.width), ..place })
+            }
             _ => canvas.draw_text(place, &value, role),
         }
         if let Some(problem) = self.problem(at) {

@@ -469,3 +469,40 @@ fn run_starts_only_after_consent() {
         assert!(!menu_text(&menu, 80, 23).contains("Before the session"));
     }
 }
+
+#[test]
+fn enter_edits_a_field_and_only_the_start_row_starts_a_run() {
+    let mut menu = menu(Vec::new());
+    menu.handle_action(Action::NewRun);
+    menu.form.selected_row = 0;
+    for _ in 0..FORM_ROWS.len() - 1 {
+        assert!(menu.handle_action(Action::Open).is_empty(), "row {}", menu.form.selected_row);
+        assert_eq!(menu.form.is_typing(), menu.form.selected_row >= 2);
+        if menu.form.is_typing() {
+            assert!(menu.handle_action(Action::Commit).is_empty() && !menu.form.is_typing());
+        }
+        menu.handle_action(Action::Down);
+    }
+    menu.form.selected_row = 4;
+    type_text(&mut menu, "84000");
+    menu.handle_action(Action::Commit);
+    assert!(menu_text(&menu, 80, 23).contains("$84,000"), "{}", menu_text(&menu, 80, 23));
+    menu.handle_action(Action::Open);
+    type_text(&mut menu, "5");
+    menu.handle_action(Action::Discard);
+    assert!(menu.page == MenuPage::NewRun && menu_text(&menu, 80, 23).contains("$84,000"), "esc restores");
+    menu.handle_action(Action::Last);
+    assert!(matches!(&menu.handle_action(Action::Open)[..],
+        [Effect::Request(Request::Create(new))] if new.cash == Some(84_000.0)));
+}
+
+#[test]
+fn first_entry_opens_the_run_that_was_played_last() {
+    let ended = RunSummary { ended: Some(RunEndReason::Horizon), day: 500, ..summary("bbbb0002") };
+    let mut menu = menu(vec![ended, summary("aaaa0001")]);
+    let screen = menu_text(&menu, 120, 39);
+    assert!(screen.contains("› Open last run") && screen.contains("finished day 500"), "{screen}");
+    assert!(
+        matches!(&menu.handle_action(Action::Open)[..], [Effect::Request(Request::Open(id, _))] if id == "bbbb0002")
+    );
+}

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::*;
 use crate::SuspendedSetting;
 use crate::counterfactual::test_kit::{
-    WEEKS_BEFORE_CHANGE, begin_company, change_setting, play_week, play_weeks, play_weeks_with_offers,
+    WEEKS_BEFORE_CHANGE, begin_company, change_setting, play_week, play_weeks,
 };
 use novamind_record::figures::{GroupFigures, SimulatedWeek, WeekFigure, WeekGroupFigures};
 use novamind_record::mode::Mode;

@@ -149,7 +149,7 @@ impl Session {
     }
 
     pub(crate) fn set_model_client(&mut self, client: Option<ModelClient>) {
-        self.voice = ModelVoice { client: client, ..ModelVoice::default() };
+        self.voice = ModelVoice { client, ..ModelVoice::default() };
     }
 
     /// Returns a view of the company that contains only visible information.

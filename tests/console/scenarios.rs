@@ -23,7 +23,7 @@ fn new_user_plays_two_weeks_and_resumes() {
     console.assert_shows("New run");
     console.press("n enter");
     console.assert_shows("day 0/500");
-    console.assert_shows("No plan has a price. No one");
+    console.assert_shows("No plan has a price. A plan without");
     enter_initial_settings(&mut console);
     console.assert_shows("Tools ●11");
     console.press("c");
@@ -73,7 +73,7 @@ fn short_run_ends_on_the_final_page() {
         let report = std::fs::read_to_string(runs.path().join(&id).join(name)).expect("a report");
         assert!(report.starts_with(begins) && report.contains("You end with $998,555."), "{name}");
     }
-    console.press("enter down enter");
+    console.press("enter down down enter");
     console.assert_shows("finished");
 }
 

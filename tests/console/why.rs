@@ -49,7 +49,7 @@ fn causes_open_from_figures_on_screens() {
         check_causes(&mut console, heading);
     }
     console.press("esc esc g m ; w");
-    console.assert_shows("explains weekly cash");
+    console.assert_shows("explains a weekly figure");
 }
 
 #[test]

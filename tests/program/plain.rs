@@ -324,7 +324,7 @@ fn report_describes_weeks_and_runs() {
         "> report\nrefused no_week_yet: no week has run yet. To simulate a week, type: next\n",
         "> report\nweek to day 7: cash change -$",
         "capacity -$",
-        "decisions before the week: price A: 0 → 12 $/month",
+        "decisions before the week: price C: 0 → 55 $/month",
         "forecast from 1 week ago: inside the interval, point ",
         "new: ",
         "> report run\n# NovaMind · run ",

@@ -226,12 +226,24 @@ pub fn draw_pane<S: PaneScreen>(
     area: Rect,
     context: &ScreenContext<'_>,
 ) {
+    draw_pane_as(screen, name, screen.focused_pane() == name, canvas, area, context);
+}
+
+/// Draws a pane with or without the focus.
+fn draw_pane_as<S: PaneScreen>(
+    screen: &S,
+    name: S::PaneId,
+    focused: bool,
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    context: &ScreenContext<'_>,
+) {
     if area.is_empty() {
         return;
     }
     let number = pane_index(screen, name);
     canvas.register_click(area, Click::Pane(number));
-    let placement = PanePlacement { area, focused: screen.focused_pane() == name, index: number };
+    let placement = PanePlacement { area, focused, index: number };
     S::pane(name).draw_with_border(screen, canvas, placement, context);
 }
 
@@ -382,7 +394,7 @@ impl<S: PaneScreen> Screen for S {
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         if canvas.zoomed {
-            draw_pane(self, self.enlarged_pane(), canvas, area, context);
+            draw_pane_as(self, self.enlarged_pane(), true, canvas, area, context);
         } else {
             self.draw_panes(canvas, area, context);
         }

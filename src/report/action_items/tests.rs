@@ -312,7 +312,7 @@ fn backlog_item_names_the_operations_spend_that_clears_it_in_a_week() {
     let need = assert_first_problem(
         &session,
         Problem::Backlog,
-        &[" wait for support.", "without a backlog, and the backlog in "],
+        &[" wait for support.", "expected when no one waits, and the backlog in "],
     );
     // The proposed number of days must follow from the numbers in both sentences.
     let numbers: Vec<f64> = format!("{} {}", need.text, need.proposal.as_deref().unwrap_or_default())

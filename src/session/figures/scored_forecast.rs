@@ -79,7 +79,7 @@ impl ScoredForecast {
         self.outcome.map(|outcome| (self.forecast.point - outcome) / error_scale(outcome))
     }
 
-    /// Describes the forecast error, for example `0.2% low`, or `<0.1%` if the rounded error is 0. Returns `None`
+    /// Describes the forecast error, for example `0.2% low`, or `within 0.1%` if the rounded error is 0. Returns `None`
     /// before the due day. Errors of 1,000 % or more are shown as `>999%`.
     pub fn describe_error(&self) -> Option<String> {
         let error = self.relative_error()?;
@@ -88,7 +88,7 @@ impl ScoredForecast {
             _ => ">999%".to_owned(),
         };
         Some(match error {
-            _ if shown == percent(0.0, 1) => "<0.1%".to_owned(),
+            _ if shown == percent(0.0, 1) => "within 0.1%".to_owned(),
             error if error < 0.0 => format!("{shown} low"),
             _ => format!("{shown} high"),
         })
@@ -170,13 +170,21 @@ mod tests {
     }
 
     #[test]
-    fn describe_error_returns_low_high_or_less_than_a_tenth() {
+    fn describe_error_returns_low_high_or_within_a_tenth() {
         let texts = [10.0, 4.0, 5.001, 5.0, 4.999, 0.0, 0.2]
             .map(|outcome| forecast_with_outcome(outcome).describe_error());
         let descriptions = texts.each_ref().map(|text| text.as_deref().unwrap_or_default());
         assert_eq!(
             descriptions,
-            ["50.0% low", "25.0% high", "<0.1%", "<0.1%", "<0.1%", "500.0% high", "480.0% high"]
+            [
+                "50.0% low",
+                "25.0% high",
+                "within 0.1%",
+                "within 0.1%",
+                "within 0.1%",
+                "500.0% high",
+                "480.0% high"
+            ]
         );
         let far = Forecast { point: -50.0, ..forecast_with_outcome(1.0).forecast };
         let far = ScoredForecast { forecast: far, ..forecast_with_outcome(1.0) };

@@ -4,7 +4,7 @@ use super::offer_changes::OfferChange;
 use super::selling::MIN_CONVERSION;
 use super::{ActionItem, ActionTarget, DiagnosisContext, MAX_CHANCE, Problem, RISK_DAYS};
 use crate::fit::LeadFlow;
-use crate::formatting::format_whole;
+use crate::formatting::{format_whole, pluralize};
 use crate::measured_conversion::SETTINGS_JUDGED_BY_LEADS;
 use novamind_base::formatting::percent;
 use novamind_session::identifiers::{Group, Plan};
@@ -42,12 +42,12 @@ fn conversion_fall(situation: &DiagnosisContext<'_>, group: Group) -> Option<Act
     Some(ActionItem {
         problem: Problem::ConversionFall(group),
         text: format!(
-            "{group}: {} of {} leads signed up last week ({}). In the {} weeks before, it was {} of {} ({}). At that \
+            "{group}: {} of {} leads signed up last week ({}). In the {} before, it was {} of {} ({}). At that \
              conversion, {} more would have signed up.{change_text}",
             format_whole(f64::from(now.signups)),
             format_whole(f64::from(now.leads)),
             percent(share, 1),
-            earlier.len(),
+            pluralize(earlier.len() as u32, "week"),
             format_whole(f64::from(before.signups)),
             format_whole(f64::from(before.leads)),
             percent(usual, 1),

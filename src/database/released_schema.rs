@@ -245,7 +245,7 @@ impl Statements<'_> {
     }
 }
 
-/// Returns the declarations of a release 2 table and of its view. A column of the table stands for the hidden columns,
+/// Returns the declarations of a release 2 table and of its view. A column of the table represents the hidden columns,
 /// if the table has any. The view does not have this column.
 fn table_and_view(table: &Table) -> String {
     let (name, columns) = (&table.name, table.column_names().join(", "));

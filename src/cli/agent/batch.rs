@@ -79,7 +79,7 @@ fn write_failure(path: &Path, error: &std::io::Error) -> Failure {
     Failure::failed(format!("{}: {error}", path.display()))
 }
 
-/// Starts the command, and restarts it until the run is over or no restarts are left. Returns the number of
+/// Starts the command, and restarts it until the run has ended or no restarts are left. Returns the number of
 /// starts and the last exit code.
 fn run_command_until_run_ends(
     options: &Options,

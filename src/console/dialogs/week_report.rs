@@ -13,7 +13,7 @@ use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
 use crate::screens::overview::action_items::item_screen;
 use crate::screens::overview::figures::{self, METRICS};
-use novamind_base::formatting::{dollars, grouped_number, short_dollars, signed_dollars};
+use novamind_base::formatting::{dollars, grouped_number, pluralize, short_dollars, signed_dollars};
 use novamind_record::figures::WeekFigure;
 use novamind_report::action_items::ActionItem;
 use novamind_report::week::MovedFigure;
@@ -164,10 +164,15 @@ impl Dialog for WeekReportDialog {
         let height = usize::from(area.height.saturating_sub(2));
         let report_lines =
             |height| self.report_lines(canvas, week_report, context, width.saturating_sub(4), height);
-        let (short, complete) = (report_lines(height), report_lines(usize::MAX));
-        self.first_omitted.set(first_omitted_line(&short.0[..short.0.len().min(height)], &complete.0));
+        let complete = report_lines(usize::MAX);
         let rows_above = self.scroll.clamped_first_row(complete.0.len().saturating_sub(height));
-        let (lines, mut places) = if self.is_complete { complete } else { short };
+        let (lines, mut places) = if self.is_complete {
+            complete
+        } else {
+            let short = report_lines(height);
+            self.first_omitted.set(first_omitted_line(&short.0[..short.0.len().min(height)], &complete.0));
+            short
+        };
         let selectable = places.len();
         // The rows below the last selectable line are reached by selecting them.
         places.extend(places.last().map_or(0, |last| last + 1)..lines.len());
@@ -485,8 +490,8 @@ fn contracts_text(week_report: &WeekReport, company: &DisplayedCompany) -> Optio
     let count: u32 = signed.iter().map(|(_, count)| count).sum();
     let by_group: Vec<String> = signed.iter().map(|(group, count)| format!("{group} {count}")).collect();
     let seats = format_count(week_report.week.new_enterprise_seats.into(), "seat");
-    let noun = if count == 1 { "enterprise" } else { "enterprises" };
-    (count > 0).then(|| format!("{count} {noun} signed ({}): {seats}", by_group.join(", ")))
+    let enterprises = pluralize(count, "enterprise");
+    (count > 0).then(|| format!("{enterprises} signed ({}): {seats}", by_group.join(", ")))
 }
 
 /// Lists the contracts and the counts of new items, with the keys of the screens that show them.

@@ -120,11 +120,15 @@ impl WeekResimulation {
             ..FixedInputs::default()
         };
         let (eve, end) = (self.start.world.day, self.after.final_state.world.day);
-        let edits =
-            Edits { suspended_settings: suspended_settings.clone(), fixed_inputs, ..Edits::default() };
+        let edits = Edits {
+            suspended_settings: suspended_settings.clone(),
+            fixed_inputs,
+            counts_due_bills: true,
+            ..Edits::default()
+        };
         let before = simulate_branch(&self.start_before, &self.steps_before, &edits, eve, go_on)?;
         let dropped_lines = self.calls.iter().flat_map(|call| call.lines.iter().copied()).collect();
-        let edits = Edits { suspended_settings, dropped_lines, ..Edits::default() };
+        let edits = Edits { suspended_settings, dropped_lines, counts_due_bills: true, ..Edits::default() };
         let free = simulate_branch(&before.final_state, &self.steps, &edits, end, go_on)?;
         let pair = WeekPair { start: &before.final_state, before: &before, after: &free };
         let fixed_inputs = pair.fix_inputs(self.inputs.iter().map(|input| input.cause), &free.days);

@@ -34,7 +34,7 @@ pub(crate) struct BranchOutcome {
     pub satisfaction: Vec<f64>,
     /// Figures of every group in each completed week.
     pub groups: Vec<ByGroup<GroupFigures>>,
-    /// Bills that fell due in each completed week, by group.
+    /// Bills that fell due in each completed week, by group; empty unless the bills are counted.
     pub due_bills: Vec<ByGroup<DueByIssue>>,
     /// Day and hash of each state whose hash is in the recorded steps; empty unless hashes are requested.
     #[cfg_attr(not(test), expect(dead_code, reason = "tests compare states"))]
@@ -371,7 +371,10 @@ impl<'a> BranchSimulation<'a> {
         let day_before = self.has_unprocessed_text.then(Vec::new);
         let params = self.simulation.params.clone();
         let settings = self.suspend_settings();
-        let due = DueToday::before_day(&self.simulation.world, &params, &mut self.due_week);
+        let due = self
+            .edits
+            .counts_due_bills
+            .then(|| DueToday::before_day(&self.simulation.world, &params, &mut self.due_week));
         let figures = self.simulation.simulate_day(
             &self.edits.fixed_inputs,
             self.projection.entry_writer(),
@@ -388,7 +391,9 @@ impl<'a> BranchSimulation<'a> {
         let Simulation { facts, params, world, .. } = &self.simulation;
         self.week.add_simulated_day(&figures, facts, &self.call_entries, params);
         add_day_to_week(&mut self.group_week, &figures, facts, world);
-        due.after_day(world, params, facts);
+        if let Some(due) = due {
+            due.after_day(world, params, facts);
+        }
         self.call_entries.clear();
         self.days.push(figures);
         let days_per_week = params.run.days_per_week;
@@ -414,7 +419,9 @@ impl<'a> BranchSimulation<'a> {
         let (world, counted) = (&self.simulation.world, std::mem::take(&mut self.group_week));
         self.satisfaction.push(mean_satisfaction(world));
         self.groups.push(ByGroup::from_fn(|group| measure_group(group, &counted[group], world)));
-        self.due_bills.push(std::mem::take(&mut self.due_week));
+        if self.edits.counts_due_bills {
+            self.due_bills.push(std::mem::take(&mut self.due_week));
+        }
         self.cash_before = cash;
     }
 

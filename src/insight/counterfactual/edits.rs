@@ -34,6 +34,8 @@ pub(crate) struct Edits {
     pub recorded_numbers: Option<Arc<CustomerNumbers>>,
     /// World inputs with fixed values.
     pub fixed_inputs: FixedInputs,
+    /// Whether the bills that fall due are counted. Only the residual of a why needs them.
+    pub counts_due_bills: bool,
     /// Settings that are 0 while days are simulated.
     pub suspended_settings: Vec<SuspendedSetting>,
     /// Parameters that replace the parameters of the run.

@@ -77,7 +77,7 @@ fn simulate_week_with(edits: Edits) -> BranchOutcome {
 
 #[test]
 fn due_bills_contain_all_cancellations_and_no_first_bills_of_individuals() {
-    let week = simulate_week_with(Edits::default());
+    let week = simulate_week_with(Edits { counts_due_bills: true, ..Edits::default() });
     let bills =
         || week.due_bills[0].pairs().flat_map(|(group, ages)| ages.iter().map(move |due| (group, due)));
     let renewals = || bills().filter(|(group, _)| !group.is_enterprise()).map(|(_, due)| due);

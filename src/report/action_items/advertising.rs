@@ -69,7 +69,8 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
         return None;
     }
     // Ads whose customers already pay more with their first bill than the ads cost are not too expensive.
-    if pair.recent.cost_per_bill().is_some_and(|cost| cost < mean_bill(situation, group)) {
+    let bill = situation.last_group_week().map_or(0.0, |groups| groups[group].revenue_per_subscriber());
+    if pair.recent.cost_per_bill().is_some_and(|cost| cost < bill) {
         return None;
     }
     let (first, last) = before.weeks;
@@ -89,13 +90,6 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
         at_risk: ads * RISK_DAYS * (1.0 - 1.0 / rise),
         is_urgent: false,
     })
-}
-
-/// Returns the mean monthly revenue per subscriber of a group, in dollars.
-fn mean_bill(situation: &DiagnosisContext<'_>, group: Group) -> f64 {
-    let Some(groups) = situation.last_group_week() else { return 0.0 };
-    let subscribers = groups[group].subscribers.0.iter().sum::<u32>();
-    groups[group].revenue.0.iter().sum::<f64>() / f64::from(subscribers.max(1))
 }
 
 /// Formats the cost per lead and the cost per first bill: `$372 a lead, $410 a first bill`.

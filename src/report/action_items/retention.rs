@@ -143,7 +143,6 @@ pub(super) fn churn_waves(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
 
 fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionItem> {
     let weeks = situation.groups;
-    let subscribers = |at: usize| f64::from(weeks[at][group].subscribers.0.iter().sum::<u32>());
     let gone = |at: usize| f64::from(weeks[at][group].left);
     let last = weeks.len().checked_sub(1)?;
     // Subscribers cancel on billing days. Cancellations are therefore compared with the number of bills.
@@ -160,7 +159,7 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     if gone <= MIN_WAVE_CANCELLATIONS || gone < MIN_CHURN_WAVE_RATIO * expected || gone - expected <= chance {
         return None;
     }
-    let mean_price = weeks[last][group].revenue.0.iter().sum::<f64>() / subscribers(last).max(1.0);
+    let mean_price = weeks[last][group].revenue_per_subscriber();
     // Older decisions cannot explain the cancellations: between those decisions and last week, all
     // subscribers were billed.
     let since = situation.observation.day.saturating_sub(BILLING_DAYS + 7);

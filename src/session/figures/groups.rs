@@ -69,6 +69,12 @@ impl GroupWeek {
         self.leads - self.word_of_mouth
     }
 
+    /// Returns the monthly revenue per subscriber, in dollars; 0 without subscribers.
+    pub fn revenue_per_subscriber(&self) -> f64 {
+        let subscribers: u32 = self.subscribers.0.iter().sum();
+        self.revenue.0.iter().sum::<f64>() / f64::from(subscribers.max(1))
+    }
+
     /// Returns the share of leads that signed up, or `None` if there were no leads.
     pub fn conversion(&self) -> Option<f64> {
         (self.leads > 0).then(|| f64::from(self.signed) / f64::from(self.leads))

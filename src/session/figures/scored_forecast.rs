@@ -47,8 +47,7 @@ impl ScoredForecast {
     /// on the due day, before purchases that follow on the same day.
     pub fn new(day: u32, forecast: &Forecast, weeks: &[WeekFigures]) -> ScoredForecast {
         let scored = ScoredForecast { forecast: *forecast, day, outcome: None };
-        let due = weeks.binary_search_by_key(&scored.due_day(), |week| week.day).ok();
-        ScoredForecast { outcome: due.map(|at| weeks[at].cash), ..scored }
+        ScoredForecast { outcome: cash_at_week_end(weeks, scored.due_day()), ..scored }
     }
 
     /// Returns the day on which the forecast is due.
@@ -98,6 +97,11 @@ impl ScoredForecast {
     pub fn sharpness(&self) -> Option<f64> {
         self.outcome.map(|outcome| (self.forecast.upper - self.forecast.lower) / error_scale(outcome))
     }
+}
+
+/// Returns the cash at the end of the week that ends on a day, before purchases that follow on the same day.
+pub(crate) fn cash_at_week_end(weeks: &[WeekFigures], day: u32) -> Option<f64> {
+    weeks.binary_search_by_key(&day, |week| week.day).ok().map(|at| weeks[at].cash)
 }
 
 fn error_scale(outcome: f64) -> f64 {

@@ -11,6 +11,7 @@ use std::path::Path;
 
 use self::position::{Chapter, PlaybackPosition, SeekResult, SeekTarget};
 use self::record_view::RecordView;
+use crate::figures::scored_forecast::cash_at_week_end;
 use crate::figures::week::week_of_day;
 use crate::play::Session;
 use crate::resume::origin::{Origin, read_origin};
@@ -294,10 +295,11 @@ impl Playback {
         }
     }
 
-    /// Returns the cash at the end of the week that ends on a day. For days after the current position, returns the recorded cash, if any.
+    /// Returns the cash at the end of the week that ends on a day. For days after the current position, returns the
+    /// recorded cash, if any.
     fn cash_on_day(&self, day: u32) -> Option<f64> {
         if day <= self.session.day() {
-            return self.session.weeks().iter().find(|week| week.day == day).map(|week| week.cash);
+            return cash_at_week_end(self.session.weeks(), day);
         }
         self.boundaries.iter().find(|stop| stop.day == day).map(|stop| stop.cash)
     }

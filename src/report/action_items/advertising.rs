@@ -5,13 +5,17 @@ use serde_json::{Map, Value, json};
 use super::selling::{GroupOffers, OfferDeficit};
 use super::{ActionItem, ActionTarget, DiagnosisContext, Problem, RISK_DAYS};
 use crate::formatting::{format_money, pluralize};
-use crate::lead_costs::{AdResults, LeadCost, lead_costs_by_pair};
+use crate::lead_costs::{AdResults, LeadCost, WINDOW_WEEKS, lead_costs_by_pair};
 use novamind_base::formatting::{dollars_and_cents, json_number};
-use novamind_session::identifiers::{Channel, Group};
+use novamind_session::identifiers::{ByGroup, Channel, Group};
+use novamind_session::{Estimates, GroupWeek};
 use novamind_tools::ToolId;
 
 /// Minimum number of enterprises that must arrive in four weeks before missing requests are reported.
 const MIN_ENTERPRISES: u32 = 3;
+/// Upper bound of the mean of a Poisson distribution of which 0 was observed, at a confidence of 95 %: −ln 0.05,
+/// rounded up.
+const MAX_EXPECTED_WITHOUT_ANY: u32 = 3;
 
 /// Finds enterprise groups that receive advertising but request no offer.
 pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
@@ -40,8 +44,8 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
                 (format!("{text} {remedy}"), Some(proposal), place)
             }
             OfferDeficit::Price | OfferDeficit::Balance => {
-                let saved = format!("Removing these ads saves {} a day.", format_money(ads));
-                (text, Some(saved), target_without_ads(situation, estimates.group, |_| true))
+                let place = target_without_ads(situation, estimates.group, |_| true);
+                (text, Some(propose_removal(ads)), place)
             }
         };
         Some(ActionItem {
@@ -54,6 +58,78 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
         })
     });
     unwanted.collect()
+}
+
+/// Finds groups whose ads have brought no signup, or no request for an offer, for at least four weeks.
+pub(super) fn ads_without_results(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
+    let of_group = |estimates| group_ads_without_results(situation, estimates);
+    situation.estimates.iter().filter_map(of_group).collect()
+}
+
+fn group_ads_without_results(situation: &DiagnosisContext<'_>, estimates: &Estimates) -> Option<ActionItem> {
+    let (group, ads) = (estimates.group, situation.ads_by_group[estimates.group]);
+    let fruitless = FruitlessAds::of_group(situation.groups, group);
+    // The smallest enterprises and all individuals have `seats.0` seats.
+    let first_bills = f64::from(MAX_EXPECTED_WITHOUT_ANY) * estimates.budget * estimates.seats.0;
+    if ads <= 0.0 || (fruitless.weeks as usize) < WINDOW_WEEKS || fruitless.spend <= first_bills {
+        return None;
+    }
+    let (lead, result, no_result, customers) = match group.is_enterprise() {
+        true => ("enterprise", "request", "none requested an offer", "of the smallest enterprises"),
+        false => ("lead", "signup", "none signed up", "customers"),
+    };
+    let (brought, result) = match fruitless.leads {
+        0 => (" and brought no lead.".to_owned(), "lead"),
+        leads => (format!(" and brought {}, but {no_result}.", pluralize(leads, lead)), result),
+    };
+    let weeks = pluralize(fruitless.weeks, "week");
+    Some(ActionItem {
+        problem: Problem::NoAdResults(group),
+        text: format!(
+            "{group}: ads for the group cost {} in the last {weeks}{brought} After {weeks} without a {result}, fewer \
+             than {MAX_EXPECTED_WITHOUT_ANY} can be expected in as many weeks, with 95% confidence. \
+             {MAX_EXPECTED_WITHOUT_ANY} {customers} with the mean budget pay {} a month.",
+            format_money(fruitless.spend),
+            format_money(first_bills)
+        ),
+        proposal: Some(propose_removal(ads)),
+        target: target_without_ads(situation, group, |_| true),
+        at_risk: ads * RISK_DAYS,
+        is_urgent: false,
+    })
+}
+
+/// The most recent consecutive weeks in which ads for a group cost money and had no result. Results are signups of
+/// individuals, and requests of enterprises for an offer.
+#[derive(Debug, Default, PartialEq)]
+struct FruitlessAds {
+    weeks: u32,
+    /// Leads that the ads brought.
+    leads: u32,
+    /// Cost of the ads, dollars.
+    spend: f64,
+}
+
+impl FruitlessAds {
+    fn of_group(weeks: &[ByGroup<GroupWeek>], group: Group) -> FruitlessAds {
+        let mut sum = FruitlessAds::default();
+        for week in weeks.iter().rev().map(|groups| &groups[group]) {
+            let spend: f64 = week.paid.iter().map(|paid| paid.spend).sum();
+            let leads: u32 = week.paid.iter().map(|paid| paid.leads).sum();
+            let signups: u32 = week.paid.iter().map(|paid| paid.billed).sum();
+            // Requests are not counted by source.
+            let results = if group.is_enterprise() { week.asked.min(leads) } else { signups };
+            if spend <= 0.0 || results > 0 {
+                break;
+            }
+            sum = FruitlessAds { weeks: sum.weeks + 1, leads: sum.leads + leads, spend: sum.spend + spend };
+        }
+        sum
+    }
+}
+
+fn propose_removal(ads: f64) -> String {
+    format!("Removing these ads saves {} a day.", format_money(ads))
 }
 
 /// Finds pairs of channel and group whose cost per lead has risen strongly.
@@ -84,7 +160,7 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
     Some(ActionItem {
         problem: Problem::LeadCost(channel, group),
         text,
-        proposal: Some(format!("Removing these ads saves {} a day.", format_money(ads))),
+        proposal: Some(propose_removal(ads)),
         target: target_without_ads(situation, group, |other| other == channel),
         // Additional cost of the leads compared with the earlier cost per lead.
         at_risk: ads * RISK_DAYS * (1.0 - 1.0 / rise),

@@ -54,6 +54,8 @@ pub enum Problem {
     Churn(Group),
     /// Enterprises of a group find no plan with sufficient quality.
     NoRequests(Group),
+    /// Ads for a group have brought no signup, or no request for an offer, in several weeks.
+    NoAdResults(Group),
     /// Leads of a group in a channel have become expensive.
     LeadCost(Channel, Group),
     /// Usage will soon exceed capacity.
@@ -77,6 +79,7 @@ impl Problem {
             Problem::Backlog => "backlog",
             Problem::Churn(_) => "churn",
             Problem::NoRequests(_) => "unwanted",
+            Problem::NoAdResults(_) => "no_ad_results",
             Problem::LeadCost(..) => "lead_cost",
             Problem::Capacity => "capacity",
         }
@@ -206,6 +209,16 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     found.extend(selling::groups_without_sales(&situation));
     found.extend(conversion::conversion_falls(&situation));
     found.extend(advertising::groups_without_requests(&situation));
+    // Other items name the reason why leads do not sign up, or request no offer.
+    let is_explained = |group: Group| {
+        let of_group = |item: &ActionItem| {
+            matches!(item.problem, Problem::NoSales(other) | Problem::NoRequests(other) if other == group)
+        };
+        found.iter().any(of_group)
+    };
+    let mut fruitless = advertising::ads_without_results(&situation);
+    fruitless.retain(|item| !matches!(item.problem, Problem::NoAdResults(group) if is_explained(group)));
+    found.extend(fruitless);
     found.extend(advertising::rising_lead_costs(&situation));
     found.extend(cash::unprofitable_plans(&situation));
     found.extend(service::diagnose_capacity(&situation));

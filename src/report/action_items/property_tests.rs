@@ -147,6 +147,7 @@ fn check_item(need: &ActionItem, session: &mut Session) {
             assert!(more > spend && reduced <= share / 2.0 + 0.1, "{need:#?}");
         }
         Problem::LeadCost(..) => check_lead_cost(need),
+        Problem::NoAdResults(group) => check_ads_without_results(need, &said, &proposed, group, session),
         Problem::Threads => {
             let day = f64::from(session.day());
             let deadline = need.text.split("by day ").skip(1).map(|rest| numbers(rest)[0]);
@@ -264,6 +265,32 @@ fn check_lead_cost(need: &ActionItem) {
     if !recent.contains("no lead for") {
         assert!(cost(recent) >= cost(earlier).map(|cost| 1.99 * cost), "{need:#?}");
     }
+}
+
+/// Checks that the spending and the leads are those of the table of ads, that it exceeds the bills of three customers,
+/// and that the form removes the named budget.
+fn check_ads_without_results(
+    need: &ActionItem,
+    said: &[f64],
+    proposed: &[f64],
+    group: Group,
+    session: &mut Session,
+) {
+    let (spend, weeks, bills) = (said[0], said[1], said[said.len() - 1]);
+    assert!(weeks >= 4.0 && spend > bills, "{need:#?}");
+    let from = f64::from(session.day()) - 7.0 * weeks;
+    let sql = format!(
+        "SELECT total(spend), total(leads_generated), count(DISTINCT day) FROM ad_channel_leads \
+         WHERE group_id = '{group}' AND day > {from}"
+    );
+    let rows = session.query(&sql).expect("rows").rows;
+    let of_column = |column| novamind_database::number_at(&rows[0], column);
+    assert_near(spend, of_column(0), 0.5, need);
+    let leads = if need.text.contains("brought no lead") { 0.0 } else { said[2] };
+    assert_eq!((of_column(1), of_column(2)), (leads, 7.0 * weeks), "{need:#?}");
+    let ads = session.settings().targeted_ads.clone();
+    let now: f64 = ads.targeted_spend.values().filter_map(|groups| groups.get(&group)).sum();
+    assert_near(proposed[0], now, 0.5, need);
 }
 
 /// Plays generated companies and checks every item in every week. Returns the number of reports of each

@@ -492,6 +492,29 @@ fn advertising_to_enterprises_without_requests_is_found() {
 }
 
 #[test]
+fn ads_without_any_lead_are_found_after_four_weeks() {
+    let channels = Channel::ALL.map(|channel| (channel.id().to_owned(), json!({"E1": 200, "S1": 100})));
+    let ads = json!({"targeted_spend": Value::Object(channels.into_iter().collect())});
+    let mut session = play_company(404, 1e6, &healthy_calls_with(&[("set_targeted_ad_spend", ads)]), 3);
+    let find = |session: &Session| {
+        let is_wanted = |item: &ActionItem| matches!(item.problem, Problem::NoAdResults(_));
+        action_items(session).into_iter().find(is_wanted)
+    };
+    assert_eq!(find(&session), None, "three weeks are too few");
+    advance_weeks(&mut session, 1);
+    let item = find(&session).unwrap_or_else(|| panic!("{:#?}", action_items(&session)));
+    let text = item.describe();
+    assert!(
+        text.starts_with("E1: ads for the group cost $28,000 in the last 4 weeks and brought no lead. After 4 weeks"),
+        "{text}"
+    );
+    assert!(text.ends_with(" Removing these ads saves $1,000 a day."), "{text}");
+    let ActionTarget::Call(_, arguments) = &item.target else { panic!("{item:?}") };
+    session.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
+    assert_eq!(find(&session), None, "no ads for the group are running");
+}
+
+#[test]
 fn expensive_leads_item_names_the_earlier_cost() {
     // A small market is soon saturated, so the same budget brings fewer leads.
     let ads = json!({"targeted_spend": {"content_marketing": {"S1": 6_000}, "social_media": {"S2": 100}}});

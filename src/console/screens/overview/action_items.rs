@@ -112,6 +112,12 @@ pub fn item_figure(need: &ActionItem, day: u32) -> Figure {
              BETWEEN {from} AND {day}"
         )
     };
+    let group_ads = |group: &str| {
+        format!(
+            "SELECT (day + 6) / 7 AS week, channel_id, sum(leads_generated) AS leads, sum(spend) AS spend\n\
+             FROM ad_channel_leads\nWHERE group_id = '{group}'\nGROUP BY 1, 2\nORDER BY 1 DESC, 2"
+        )
+    };
     let (term, sql) = match need.problem {
         Problem::Runway => {
             let week = day.div_ceil(7);
@@ -139,6 +145,7 @@ pub fn item_figure(need: &ActionItem, day: u32) -> Figure {
             ("conversion", Some(leads_of(group.id())))
         }
         Problem::NoRequests(group) => ("delivered-quality", Some(leads_of(group.id()))),
+        Problem::NoAdResults(group) => ("cost-per-lead", Some(group_ads(group.id()))),
         Problem::LeadCost(channel, group) => ("cost-per-lead", Some(costs::cost_query(channel, group))),
         Problem::Margin => ("gross-margin", None),
         Problem::Overload | Problem::Capacity => {
@@ -174,6 +181,7 @@ fn item_quantity(need: &ActionItem) -> Option<WeekQuantity> {
         | Problem::NoPrice
         | Problem::NoQuota
         | Problem::NoRequests(_)
+        | Problem::NoAdResults(_)
         | Problem::LeadCost(..)
         | Problem::Margin => None,
     }

@@ -320,8 +320,8 @@ impl<'a> GroupOffers<'a> {
         }
     }
 
-    /// Proposes a market study that updates estimates older than four weeks, if its cost does not exceed the money at
-    /// risk. Returns `None` if a study is already running.
+    /// Proposes a market study that updates estimates older than four weeks, if its cost exceeds neither the money at
+    /// risk nor the cash. Returns `None` if a study is already running.
     fn propose_study(&self, at_risk: f64) -> Option<(String, ActionTarget)> {
         let (estimates, day) = (self.estimates, self.situation.observation.day);
         let is_studied = || {
@@ -336,8 +336,8 @@ impl<'a> GroupOffers<'a> {
             return None;
         }
         let terms = &self.situation.terms;
-        let study =
-            terms.study_level(estimates.level.max(terms.targets.0)).filter(|study| study.cost <= at_risk)?;
+        let level = terms.study_level(estimates.level.max(terms.targets.0));
+        let study = level.filter(|study| study.cost <= at_risk.min(self.situation.observation.cash))?;
         let text = format!(
             "The estimate is {} old, and required quality can have risen since then. A level {} study updates the estimate for {} in {}.",
             pluralize(day - estimates.as_of, "day"),

@@ -20,7 +20,7 @@ const MIN_SUBSCRIPTIONS_FOR_MARGIN: u32 = 10;
 /// Usage of the last day includes customers who cancelled on that day, but revenue does not.
 const MAX_LAST_DAY_RATIO: f64 = 3.0;
 /// Mean usage of the days of a week as a share of the usage of its last day, because less is used at weekends
-/// (`docs/mechanics/day.md`).
+/// (`docs/mechanics/day.md`). The last day of a week has the weekday factor of day 0.
 const MEAN_DAY_SHARE: f64 = 0.936;
 
 /// Reports a problem if cash is expected to last less than eight weeks.
@@ -208,4 +208,17 @@ fn propose_cheaper_setting(
         format_whole(held)
     );
     Some((text, ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use novamind_world::params::Params;
+
+    #[test]
+    fn mean_day_share_follows_the_weekday_factors() {
+        let weekly = &Params::bundled().calendar.weekly;
+        let share = weekly.iter().sum::<f64>() / weekly.len() as f64 / weekly[0];
+        assert!((MEAN_DAY_SHARE - share).abs() < 5e-4, "{share}");
+    }
 }

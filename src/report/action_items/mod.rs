@@ -211,9 +211,7 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     found.extend(advertising::groups_without_requests(&situation));
     // Other items name the reason why leads do not sign up, or request no offer.
     let is_explained = |group: Group| {
-        let of_group = |item: &ActionItem| {
-            matches!(item.problem, Problem::NoSales(other) | Problem::NoRequests(other) if other == group)
-        };
+        let of_group = |item: &ActionItem| matches!(item.problem, Problem::NoSales(other) | Problem::NoRequests(other) if other == group);
         found.iter().any(of_group)
     };
     let mut fruitless = advertising::ads_without_results(&situation);

@@ -505,7 +505,9 @@ fn ads_without_any_lead_are_found_after_four_weeks() {
     let item = find(&session).unwrap_or_else(|| panic!("{:#?}", action_items(&session)));
     let text = item.describe();
     assert!(
-        text.starts_with("E1: ads for the group cost $28,000 in the last 4 weeks and brought no lead. After 4 weeks"),
+        text.starts_with(
+            "E1: ads for the group cost $28,000 in the last 4 weeks and brought no lead. After 4 weeks"
+        ),
         "{text}"
     );
     assert!(text.ends_with(" Removing these ads saves $1,000 a day."), "{text}");

@@ -1,7 +1,7 @@
 //! The measured conversion of a group, which is shown next to every estimate of its conversion.
 
 use super::fit::LeadFlow;
-use super::formatting::format_whole;
+use super::formatting::{format_whole, pluralize};
 use novamind_base::formatting::percent;
 use novamind_session::Session;
 use novamind_session::identifiers::Group;
@@ -16,7 +16,7 @@ pub const SETTINGS_JUDGED_BY_LEADS: [ToolId; 4] =
     [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetUsageQuotas, ToolId::SetLeadPromotion];
 
 /// Number of leads of a group in the last weeks, and number of those leads that took a plan.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredConversion {
     /// Number of individuals who signed up, or number of enterprises that requested an offer.
     pub taken: u32,
@@ -24,9 +24,8 @@ pub struct MeasuredConversion {
     pub leads: u32,
     /// First and last measured week; `None` before the first week.
     pub weeks: Option<(u32, u32)>,
-    /// Day of the last change of the plans after the start of the measured weeks; `None` if the plans did not
-    /// change.
-    pub changed_on: Option<u32>,
+    /// Days on which the plans changed after the start of the measured weeks, in ascending order.
+    pub changed_on: Vec<u32>,
     is_enterprise: bool,
 }
 
@@ -41,7 +40,7 @@ impl MeasuredConversion {
         let start = session.day().saturating_sub(7 * recent.len() as u32);
         let today = company.setting_changes();
         let decided = company.decisions().iter().map(|decisions| (decisions.day, &decisions.changes));
-        let mut days = decided
+        let days = decided
             .chain([(session.day(), &today)])
             // A change at the start of the measured weeks applies to all leads in these weeks.
             .filter(|(day, _)| *day > start)
@@ -53,7 +52,7 @@ impl MeasuredConversion {
             taken: if group.is_enterprise() { flow.requests } else { flow.signups },
             leads: flow.leads,
             weeks: (!recent.is_empty()).then(|| (last + 1 - recent.len() as u32, last)),
-            changed_on: days.next_back(),
+            changed_on: days.collect(),
             is_enterprise: group.is_enterprise(),
         }
     }
@@ -71,14 +70,29 @@ impl MeasuredConversion {
         let Some(share) = self.share() else { return format!("not measured: no leads in {weeks}") };
         let whole = |count: u32| format_whole(f64::from(count));
         let asked = if self.is_enterprise { " asked for an offer" } else { "" };
-        let changed =
-            self.changed_on.map_or(String::new(), |day| format!("; you changed the plans on day {day}"));
+        let changed = self.describe_changes();
         format!(
             "measured {}: {} of {} leads{asked} in {weeks}{changed}",
             percent(share, 1),
             whole(self.taken),
             whole(self.leads)
         )
+    }
+
+    /// Describes the days on which the plans changed, because leads before and after them saw different plans.
+    fn describe_changes(&self) -> String {
+        let days = |days: &[u32]| days.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+        match self.changed_on.as_slice() {
+            [] => String::new(),
+            [day] => format!("; you changed the plans on day {day}"),
+            [earlier @ .., last] if earlier.len() < MEASURED_WEEKS => {
+                format!("; you changed the plans on days {} and {last}", days(earlier))
+            }
+            [.., last] => format!(
+                "; you changed the plans on {}, last on day {last}",
+                pluralize(self.changed_on.len() as u32, "day")
+            ),
+        }
     }
 
     /// Describes the measurement briefly: `measured 26% of 1,230 leads`.
@@ -121,13 +135,13 @@ mod tests {
             (f64::from(measured.leads), f64::from(measured.taken)),
             (number_at(&rows[0], 0), number_at(&rows[0], 1))
         );
-        assert_eq!((measured.weeks, measured.changed_on), (Some((3, 6)), None));
+        assert_eq!((measured.weeks, measured.changed_on.as_slice()), (Some((3, 6)), [].as_slice()));
         let text = measured.describe();
         assert!(text.starts_with("measured ") && text.ends_with(" leads in weeks 3 to 6"), "{text}");
     }
 
     #[test]
-    fn measurement_names_the_last_change_of_the_plans() {
+    fn measurement_names_the_days_on_which_the_plans_changed() {
         let mut session = play_weeks(5);
         session.call("set_prices", &json!({"A": 19}), Via::Script).expect("a price");
         let measured = MeasuredConversion::of_group(&session, group("S1"));
@@ -136,9 +150,23 @@ mod tests {
             "{}",
             measured.describe()
         );
+        advance_weeks(&mut session, 1);
+        session.call("set_prices", &json!({"A": 18}), Via::Script).expect("a price");
+        let measured = MeasuredConversion::of_group(&session, group("S1"));
+        assert!(
+            measured.describe().ends_with("; you changed the plans on days 35 and 42"),
+            "{}",
+            measured.describe()
+        );
+        let often = MeasuredConversion { changed_on: (30..40).collect(), ..measured };
+        assert!(
+            often.describe().ends_with("; you changed the plans on 10 days, last on day 39"),
+            "{}",
+            often.describe()
+        );
         advance_weeks(&mut session, 4);
         let measured = MeasuredConversion::of_group(&session, group("S1"));
-        assert_eq!(measured.changed_on, None, "all leads saw the new price");
+        assert!(measured.changed_on.is_empty(), "all leads saw the new plans");
     }
 
     #[test]
@@ -148,7 +176,7 @@ mod tests {
         assert_eq!(measured.describe(), "not measured yet, because no week has been simulated");
         let measured = MeasuredConversion { weeks: Some((1, 1)), ..measured };
         assert_eq!(measured.describe(), "not measured: no leads in week 1");
-        let asked = MeasuredConversion { taken: 2, leads: 8, is_enterprise: true, ..measured };
+        let asked = MeasuredConversion { taken: 2, leads: 8, is_enterprise: true, ..measured.clone() };
         assert_eq!(asked.describe(), "measured 25.0%: 2 of 8 leads asked for an offer in week 1");
         assert_eq!(
             (asked.describe_briefly(), measured.describe_briefly()),

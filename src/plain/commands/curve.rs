@@ -107,7 +107,7 @@ pub(super) fn measured_to_json(measured: &MeasuredConversion) -> Value {
         "taken": measured.taken,
         "leads": measured.leads,
         "weeks": measured.weeks,
-        "plans_changed_on": measured.changed_on,
+        "plans_changed_on": measured.changed_on.last(),
     })
 }
 

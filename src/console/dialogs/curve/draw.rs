@@ -77,9 +77,9 @@ impl CurveDialog {
     ) {
         let is_low = area.height < MIN_ROWS_FOR_PLAN_LINES;
         let (width, measured) =
-            (area.width as usize, context.company.fit(self.group).map(|fit| fit.measured));
+            (area.width as usize, context.company.fit(self.group).map(|fit| &fit.measured));
         let outcome: Vec<String> = match (is_low, measured) {
-            (true, measured) => wrap(&describe_conversion_briefly(&opened.outcome, measured.as_ref()), width),
+            (true, measured) => wrap(&describe_conversion_briefly(&opened.outcome, measured), width),
             (false, None) => wrap(&describe_outcome(&opened.outcome), width),
             (false, Some(measured)) => [describe_outcome(&opened.outcome), measured.describe()]
                 .iter()

@@ -119,7 +119,7 @@ fn table_figures_equal_their_rows() {
             ("billed/mo", facts.sum(|held| held.monthly_revenue), "sum(amount)"),
             ("leads", flow.leads, "count(*)"),
             ("new", flow.signups, "count(*)"),
-            ("left", flow.cancellations, "count(*)"),
+            ("cancelled", flow.cancellations, "count(*)"),
             ("ads/day", screen.data.ad_spend(*group), "sum(spend)"),
             ("churn 30d", facts.sum(|held| held.active_30_days_ago) + facts.lost_in_30_days, "count(*)"),
             ("use/day", facts.sum(|held| held.units), "sum(usage_units)"),
@@ -244,7 +244,7 @@ fn fit_shows_the_curve_and_both_conversions_of_the_open_group() {
             assert!(text.contains(words), "{words} at {width}×{height} in\n{text}");
         }
     }
-    let measured = company.fit(group("S1")).expect("a fit").measured;
+    let measured = &company.fit(group("S1")).expect("a fit").measured;
     let text = screen_text(&screen, &company, 200, 57);
     for words in [measured.describe().split(" in weeks").next().expect("words"), "The estimate leaves out", "quality required"] {
         assert!(text.contains(words), "{words} in\n{text}");

@@ -63,8 +63,8 @@ impl PriceCurve {
         match self.curve.as_ref().filter(|_| form.spec.id == ToolId::SetPrices) {
             Some(Ok(explorer)) => {
                 let outcome = explorer.outcome_for_plans(&drafted_plans(explorer, form));
-                let measured = company.fit(explorer.group).map(|fit| fit.measured);
-                let conversion = describe_conversion_briefly(&outcome, measured.as_ref());
+                let measured = company.fit(explorer.group).map(|fit| &fit.measured);
+                let conversion = describe_conversion_briefly(&outcome, measured);
                 let draft = if form.sheet.is_changed() { " at the drafted prices" } else { "" };
                 let plans = drafted_plans(explorer, form);
                 let is_sold = |plan: &PlanPoint| plan.list_price > 0.0 && plan.quota > 0.0;

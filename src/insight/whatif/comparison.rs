@@ -145,12 +145,15 @@ impl BranchFigures {
 }
 
 impl BranchComparison {
-    /// Returns the days for which figures are shown: 4, 12 and 26 weeks after the start of the branches, and the last
-    /// day.
+    /// Returns the days for which figures are shown: the end of the first week in which a branch differs, 4, 12 and 26
+    /// weeks after the start of the branches, and the last day.
     pub fn milestone_days(&self, days_per_week: u32) -> Vec<u32> {
-        let weeks = [4, 12, 26].map(|weeks| self.from + weeks * days_per_week);
-        let mut days: Vec<u32> = weeks.into_iter().filter(|day| *day < self.until).collect();
-        days.push(self.until);
+        let differs_on = self.branches.iter().filter_map(|branch| branch.first_different_day).min();
+        let weeks = differs_on.map(|day| day.saturating_sub(self.from).div_ceil(days_per_week));
+        let weeks = weeks.into_iter().chain([4, 12, 26]).map(|weeks| self.from + weeks * days_per_week);
+        let mut days: Vec<u32> = weeks.filter(|day| *day < self.until).chain([self.until]).collect();
+        days.sort_unstable();
+        days.dedup();
         days
     }
 }

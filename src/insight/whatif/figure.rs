@@ -24,6 +24,8 @@ pub enum BranchFigure {
     Leads,
     /// Number of individuals who signed up in the week.
     NewSubscribers,
+    /// New subscribers of the week as a share of its individual leads; NaN if there are no leads.
+    Conversion,
     /// Number of individuals who cancelled in the week.
     Cancellations,
     /// Mean satisfaction of individuals, which is hidden in unfinished runs.
@@ -35,7 +37,7 @@ pub(super) type FigureValues = [f64; BranchFigure::ALL.len()];
 
 impl BranchFigure {
     /// All figures in display order.
-    pub const ALL: [BranchFigure; 9] = [
+    pub const ALL: [BranchFigure; 10] = [
         BranchFigure::Cash,
         BranchFigure::RecurringRevenue,
         BranchFigure::Subscribers,
@@ -43,6 +45,7 @@ impl BranchFigure {
         BranchFigure::Churn,
         BranchFigure::Leads,
         BranchFigure::NewSubscribers,
+        BranchFigure::Conversion,
         BranchFigure::Cancellations,
         BranchFigure::Satisfaction,
     ];
@@ -57,6 +60,7 @@ impl BranchFigure {
             BranchFigure::Churn => "30-day churn",
             BranchFigure::Leads => "individual leads a week",
             BranchFigure::NewSubscribers => "new subscribers a week",
+            BranchFigure::Conversion => "conversion",
             BranchFigure::Cancellations => "cancellations a week",
             BranchFigure::Satisfaction => "satisfaction",
         }
@@ -76,6 +80,7 @@ impl BranchFigure {
         match self {
             BranchFigure::Cash | BranchFigure::RecurringRevenue => FigureUnit::Dollars,
             BranchFigure::Churn => FigureUnit::Share,
+            BranchFigure::Conversion => FigureUnit::PreciseShare,
             BranchFigure::Satisfaction => FigureUnit::Level,
             _ => FigureUnit::Count,
         }
@@ -106,6 +111,7 @@ pub(super) fn weekly_values(earlier: &[DayFigures], outcome: &BranchOutcome) -> 
             BranchFigure::Churn => churn(week.day),
             BranchFigure::Leads => week.new_individual_leads.into(),
             BranchFigure::NewSubscribers => week.new_individual_subscribers.into(),
+            BranchFigure::Conversion => week.conversion(),
             BranchFigure::Cancellations => week.cancellations.into(),
             BranchFigure::Satisfaction => *satisfaction,
         })

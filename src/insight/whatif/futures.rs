@@ -81,11 +81,11 @@ impl Futures {
     }
 }
 
-/// Returns the value of a figure after a bankruptcy: unchanged cash, 0 for counts, NaN for churn and satisfaction.
+/// Returns the value of a figure after a bankruptcy: unchanged cash, 0 for counts, NaN for shares and satisfaction.
 fn value_after_bankruptcy(figure: BranchFigure, last: &FigureValues) -> f64 {
     match figure {
         BranchFigure::Cash => last[figure as usize],
-        BranchFigure::Churn | BranchFigure::Satisfaction => f64::NAN,
+        BranchFigure::Churn | BranchFigure::Conversion | BranchFigure::Satisfaction => f64::NAN,
         _ => 0.0,
     }
 }

@@ -64,6 +64,21 @@ fn unchanged_branch_equals_the_run() {
     let left = was.value(BranchFigure::Churn, session.day()).expect("a value");
     let days = session.weeks().len();
     assert!(left > 0.0 && left < 1.0 && days > 8, "{left}");
+    let conversion = session.weeks()[3].conversion();
+    assert_eq!(was.value(BranchFigure::Conversion, 28), Some(conversion));
+    assert!(conversion > 0.0, "{conversion}");
+}
+
+#[test]
+fn comparison_shows_the_first_week_that_differs() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = play_run(runs.path(), Mode::Debug);
+    let compared =
+        compare(&session, 4, &[&["in 6 set_daily_spend operations=900"], &["keep set_model_tiers"]]);
+    assert_eq!(compared.branches[1].first_different_day, Some(36));
+    assert_eq!(compared.milestone_days(7), [42, 49, compared.until]);
+    let same = compare(&session, 4, &[&["keep set_model_tiers"]]);
+    assert_eq!(same.milestone_days(7), [49, same.until]);
 }
 
 #[test]

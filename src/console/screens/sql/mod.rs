@@ -62,6 +62,8 @@ struct RunningStatement {
     text: String,
     statement: Statement,
     started_at: Instant,
+    /// Day of the company when the statement was started.
+    day: u32,
     answer: Pending<Query>,
 }
 
@@ -84,6 +86,8 @@ pub struct Sql {
     derived_sql: String,
     /// Whether the run permits queries of x-ray tables.
     can_inspect: bool,
+    /// Current day of the company.
+    day: u32,
 }
 
 impl Default for Sql {
@@ -101,6 +105,7 @@ impl Default for Sql {
             has_inserted_column: false,
             derived_sql: String::new(),
             can_inspect: false,
+            day: 0,
         }
     }
 }
@@ -166,7 +171,7 @@ impl Sql {
         self.history.add(&statement.sql);
         let of = self.query_source(&statement.sql);
         let (answer, ask) = Pending::with_question(Query { sql: statement.sql.clone(), tables: of });
-        self.running = Some(RunningStatement { text: self.editor.text(), statement, started_at: Instant::now(), answer });
+        self.running = Some(RunningStatement { text: self.editor.text(), statement, started_at: Instant::now(), day: self.day, answer });
         vec![Effect::SentText("sql"), Effect::Ask(ask)]
     }
 
@@ -206,6 +211,7 @@ impl Sql {
 impl ScreenState for Sql {
     fn on_company_change(&mut self, context: &ScreenContext<'_>) {
         self.can_inspect = context.company.can_inspect;
+        self.day = context.company.observation.day;
         self.browser.shows_hidden = self.can_inspect;
         self.browser.interface = context.company.numbers.interface();
         self.editor.interface = self.browser.interface;
@@ -241,7 +247,7 @@ impl ScreenState for Sql {
             }
         }
         let took = answer.as_ref().map_or(Duration::ZERO, |(_, took)| *took);
-        self.results.add_answer(&running.statement.sql, answer.map(|(rows, _)| rows), took);
+        self.results.add_answer(&running.statement.sql, answer.map(|(rows, _)| rows), took, running.day);
         Vec::new()
     }
 }

@@ -161,6 +161,8 @@ impl Pane<Sql> for ResultsPane {
             None => sql.results.statement(),
         };
         let mark = if asked.is_some_and(|asked| sql.reads_hidden_state(asked)) { " · x-ray" } else { "" };
+        let outdated = sql.results.outdated_day(context.company.observation.day).filter(|_| !sql.is_running());
+        let outdated = outdated.map_or(String::new(), |day| format!(" · as of day {day}"));
         let in_editor = sql.editor.statement();
         let in_editor = in_editor.as_ref().map(|statement| statement.sql.as_str());
         // If there are several results, the tabs show the titles of the results.
@@ -169,7 +171,7 @@ impl Pane<Sql> for ResultsPane {
             None => sql.results.title_of_other_statement(in_editor),
         };
         let other = other.map_or(String::new(), |title| format!(" of {title}"));
-        let title = title.replacen("Result", &format!("Result{}{other}{mark}", sql.results.position_label()), 1);
+        let title = title.replacen("Result", &format!("Result{}{other}{mark}{outdated}", sql.results.position_label()), 1);
         PaneBorder { title, note, keys: context.hints(sql.results.current().actions()), ..PaneBorder::default() }
     }
 

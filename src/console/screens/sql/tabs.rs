@@ -31,6 +31,8 @@ struct ResultTab {
     title: String,
     pinned: bool,
     results: ResultView,
+    /// Day of the company when the statement was run.
+    day: u32,
 }
 
 /// The tabs of results, the newest last.
@@ -59,6 +61,12 @@ impl ResultTabs {
         self.tabs.get(self.current_index).map(|tab| tab.sql.as_str())
     }
 
+    /// Returns the day of the displayed result if the company has another day now.
+    pub fn outdated_day(&self, today: u32) -> Option<u32> {
+        let tab = self.tabs.get(self.current_index).filter(|tab| !tab.results.is_rejected())?;
+        (tab.day != today).then_some(tab.day)
+    }
+
     /// Returns the title of the only result, if the statement of the result is not the statement in the editor.
     pub fn title_of_other_statement(&self, in_editor: Option<&str>) -> Option<&str> {
         match self.tabs.as_slice() {
@@ -67,19 +75,19 @@ impl ResultTabs {
         }
     }
 
-    /// Stores the answer to a statement and shows the answer. If the answer is an error, the tab with earlier rows of
+    /// Stores the answer to a statement that was run on a day, and shows the answer. If the answer is an error, the tab with earlier rows of
     /// the statement is kept.
-    pub fn add_answer(&mut self, sql: &str, answer: Result<QueryResult, Rejection>, took: Duration) {
+    pub fn add_answer(&mut self, sql: &str, answer: Result<QueryResult, Rejection>, took: Duration, day: u32) {
         let renewed = |tab: &ResultTab| !tab.pinned && answer.is_ok() && tab.sql == sql;
         let known = self.tabs.iter().position(renewed);
         let refused = self.tabs.iter().position(|tab| tab.results.is_rejected());
         let at = known.or(refused).unwrap_or_else(|| {
             let results = ResultView::default();
-            self.tabs.push(ResultTab { sql: String::new(), title: String::new(), pinned: false, results });
+            self.tabs.push(ResultTab { sql: String::new(), title: String::new(), pinned: false, results, day });
             self.tabs.len() - 1
         });
         let tab = &mut self.tabs[at];
-        (tab.sql, tab.title) = (sql.to_owned(), tab_title(sql));
+        (tab.sql, tab.title, tab.day) = (sql.to_owned(), tab_title(sql), day);
         tab.results.set_answer(sql, answer, took);
         self.current_index = at;
         // The tab of a failed statement is removed when another result is shown.
@@ -209,7 +217,7 @@ mod tests {
     }
 
     fn add_answer_for(tabs: &mut ResultTabs, number: i64) {
-        tabs.add_answer(&format!("SELECT {number}"), rows(number), Duration::ZERO);
+        tabs.add_answer(&format!("SELECT {number}"), rows(number), Duration::ZERO, 7);
     }
 
     fn titles(tabs: &ResultTabs) -> Vec<&str> {
@@ -258,12 +266,24 @@ mod tests {
     }
 
     #[test]
+    fn result_of_an_earlier_day_is_outdated_until_it_runs_again() {
+        let mut tabs = ResultTabs::default();
+        assert_eq!(tabs.outdated_day(7), None);
+        add_answer_for(&mut tabs, 1);
+        assert_eq!((tabs.outdated_day(7), tabs.outdated_day(14)), (None, Some(7)));
+        tabs.add_answer("SELECT 1", rows(1), Duration::ZERO, 14);
+        assert_eq!((tabs.tabs.len(), tabs.outdated_day(14)), (1, None));
+        tabs.add_answer("SELECT x", Err(Rejection::new("sql_error", "no")), Duration::ZERO, 14);
+        assert_eq!(tabs.outdated_day(21), None, "an error has no rows");
+    }
+
+    #[test]
     fn rejection_keeps_earlier_rows_until_the_next_answer() {
         let mut tabs = ResultTabs::default();
         add_answer_for(&mut tabs, 1);
-        tabs.add_answer("SELECT 1", Err(Rejection::new("sql_cancelled", "cancelled")), Duration::ZERO);
+        tabs.add_answer("SELECT 1", Err(Rejection::new("sql_cancelled", "cancelled")), Duration::ZERO, 7);
         assert_eq!((tabs.tabs.len(), tabs.current_index), (2, 1));
-        tabs.add_answer("SELECT x", Err(Rejection::new("sql_error", "no")), Duration::ZERO);
+        tabs.add_answer("SELECT x", Err(Rejection::new("sql_error", "no")), Duration::ZERO, 7);
         assert_eq!(tabs.tabs.len(), 2);
         add_answer_for(&mut tabs, 1);
         assert_eq!(
@@ -294,7 +314,7 @@ mod tests {
         for number in 0..4 {
             let large =
                 QueryResult { columns: vec!["n".to_owned()], rows: vec![vec![text.clone()]], ..QueryResult::default() };
-            tabs.add_answer(&format!("SELECT {number}"), Ok(large), Duration::ZERO);
+            tabs.add_answer(&format!("SELECT {number}"), Ok(large), Duration::ZERO, 7);
         }
         assert!(tabs.total_bytes() <= MAX_TOTAL_BYTES && tabs.tabs.len() == 3, "{}", tabs.tabs.len());
     }

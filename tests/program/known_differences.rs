@@ -151,10 +151,7 @@ const INSTRUCTION_EXAMPLES: [Example; 6] = [
         stage.assert_term_contains("operations", &["per dollar"]);
     }),
     ("the effect of development", |stage| {
-        stage.assert_manual_contains(
-            "set_daily_spend",
-            &["Development permanently raises the quality", "ln(1 + spend"],
-        );
+        stage.assert_manual_contains("set_daily_spend", &["development adds", "ln(1 + spend"]);
         stage.assert_manual_contains("set_targeted_dev_spend", &["ln(1 + spend"]);
         stage.assert_term_contains("development", &["ln(1 + spend"]);
     }),

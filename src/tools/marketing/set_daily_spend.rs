@@ -36,8 +36,9 @@ static SPEC: ToolSpec = ToolSpec {
              exp(-spend / {operations.ops_outage_reduction_scale}), at least {operations.ops_outage_min_prob}, and more \
              often above capacity. They resolve open issues: {issues.issue_resolution_base_rate} per day without spending, plus \
              {issues.individual_ops_scale} per dollar for individuals, {issues.enterprise_ops_scale} for enterprises. \
-             Development permanently raises the quality for all groups every day, by \
-             {development.dev_improvement_coef} ln(1 + spend / {development.dev_spend_scale}).",
+             Every day, development adds {development.dev_improvement_coef} ln(1 + spend / \
+             {development.dev_spend_scale}) to the quality for all groups. The addition is permanent, but it can be smaller \
+             than the random change of a day.",
     cost: "both amounts on every simulated day",
     written_tables: &["config_history"],
     rejection_codes: &[

@@ -11,6 +11,7 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::trajectory::record::{Record, RunEndReason};
 use novamind_session::{
     Category, ErrorIntervals, ForecastError, GrowthStage, Level, Playback, SeekTarget, Session,
+    cash_at_week_end,
 };
 use novamind_world::params::Params;
 
@@ -37,7 +38,7 @@ struct PastForecast {
     scale: f64,
     /// Ranges of cash, by level, dollars.
     ranges: [(f64, f64); 2],
-    /// Actual cash, or 0 after a bankruptcy, dollars.
+    /// Cash at the end of the week that ends on the due day, or 0 after a bankruptcy, dollars.
     outcome: f64,
     /// Income and costs from the forecast to its outcome, without one-time costs, dollars.
     turnover: f64,
@@ -129,12 +130,11 @@ fn current_forecasts(session: &Session) -> Vec<(u32, PastForecast)> {
 impl CompanyForecasts {
     fn with_outcomes(name: String, made: Vec<(u32, PastForecast)>, session: &Session) -> CompanyForecasts {
         let went_bankrupt = session.ended() == Some(RunEndReason::Bankruptcy);
-        let cash = session.cash_by_day();
         let scored = made.into_iter().filter_map(|(day, forecast)| {
             let due = day + forecast.horizon;
             // After a bankruptcy, the outcome is 0. If these forecasts were omitted, only successful
             // companies would be measured.
-            let outcome = match cash.get(due as usize) {
+            let outcome = match cash_at_week_end(session.weeks(), due) {
                 Some(cash) => cash.max(0.0),
                 None if went_bankrupt => 0.0,
                 None => return None,
@@ -218,8 +218,11 @@ impl StageResult {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
     use crate::random_settings::random_policy;
+    use novamind_record::trajectory::record::Via;
 
     #[test]
     fn forecasts_of_a_played_company_are_scored_once_due() {
@@ -233,6 +236,21 @@ mod tests {
         let results = stage_results(&[company.clone(), company]);
         assert_eq!(results[&(first, 7)].companies, 2);
         assert!(results.values().all(|result| (0.0..=1.0).contains(&result.covered_95)));
+    }
+
+    #[test]
+    fn outcome_precedes_the_purchases_of_the_due_day() {
+        let configuration = Configuration::bundled();
+        let spec = RunSpec::for_seed(5);
+        let mut session = Session::create(new_run(&random_policy(2), &spec), &configuration).expect("a run");
+        let made = current_forecasts(&session);
+        let forecasts = session.company().naive_forecasts();
+        session.advance("a week", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+        let before = session.company().observe().cash;
+        session.call("start_research_project", &json!({"tier": 1}), Via::Script).expect("a project");
+        assert!(session.company().observe().cash < before);
+        let scored = CompanyForecasts::with_outcomes(String::new(), made, &session);
+        assert_eq!(scored.forecasts.iter().map(|forecast| forecast.outcome).collect::<Vec<_>>(), [before]);
     }
 
     #[test]

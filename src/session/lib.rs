@@ -48,7 +48,9 @@ pub use figures::outlook::{
     BillingCalendar, CommittedCosts, ErrorIntervals, ExpectedFlows, ForecastError, GrowthStage, Level,
     MAX_RUNWAY_DAYS, Outlook, Runway, StageInterval,
 };
-pub use figures::scored_forecast::{ForecastScore, IntervalPosition, ScoredForecast, submitted_forecasts};
+pub use figures::scored_forecast::{
+    ForecastScore, IntervalPosition, ScoredForecast, cash_at_week_end, submitted_forecasts,
+};
 pub use figures::session_count::SessionCount;
 pub use figures::setting::{Audience, SettingId, setting_values};
 pub use figures::week::{

@@ -100,7 +100,7 @@ impl ScoredForecast {
 }
 
 /// Returns the cash at the end of the week that ends on a day, before purchases that follow on the same day.
-pub(crate) fn cash_at_week_end(weeks: &[WeekFigures], day: u32) -> Option<f64> {
+pub fn cash_at_week_end(weeks: &[WeekFigures], day: u32) -> Option<f64> {
     weeks.binary_search_by_key(&day, |week| week.day).ok().map(|at| weeks[at].cash)
 }
 

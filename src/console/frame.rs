@@ -10,6 +10,7 @@ use super::context::{ScreenContext, ScreenId};
 use super::playback::EntryFilter;
 use novamind_base::formatting::{compact_number, dollars, grouped_number, short_dollars};
 use novamind_record::trajectory::record::RunEndReason;
+use novamind_report::cash_before_purchases;
 use novamind_session::TimeLeft;
 use novamind_tui::ascii;
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
@@ -211,13 +212,20 @@ fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Displaye
     let count = |value: u32| {
         if wide { grouped_number(f64::from(value), 0) } else { compact_number(f64::from(value)) }
     };
-    let moved = format_change(change, &money(change.abs()));
+    // Purchases on the same day are not part of the change over the last week.
+    let moved = match cash_before_purchases(seen) {
+        None => format!(" {}", format_change(change, &money(change.abs()))),
+        Some(_) if wide && seen.day > 0 => {
+            format!(" {} last week", format_change(change, &money(change.abs())))
+        }
+        Some(_) => String::new(),
+    };
     let pieces = [
         (" NovaMind".to_owned(), Role::Title),
         (format!("  day {}/{}", seen.day, seen.last_day), Role::Text),
         (format!(" · wk {}/{}", seen.week, seen.last_day.div_ceil(7)), Role::Text),
         (format!("   cash {}", money(seen.cash)), if poor { Role::Warning } else { Role::Strong }),
-        (format!(" {moved}"), if change < 0.0 { Role::Bad } else { Role::Good }),
+        (moved, if change < 0.0 { Role::Bad } else { Role::Good }),
         (runway, if poor { Role::Warning } else { Role::Text }),
         (format!("   subs {}", count(seen.subscribers)), Role::Text),
         (format!("   seats {}", count(seen.seats)), Role::Text),

@@ -11,12 +11,26 @@ pub fn format_money(value: f64) -> String {
     format!("{sign}${}", grouped_number(value.abs(), 0))
 }
 
+/// Returns the name of a figure of the week on screens. The name of data and commands is that of the dashboard of the
+/// release, in which enterprise leads are only the enterprises that requested an offer.
+pub fn figure_name(name: &str) -> &str {
+    if name == "enterprise leads" { "offer requests" } else { name }
+}
+
 /// Returns the label of a figure of the week. The unit is part of the label if neither the name nor the value shows it.
-pub fn figure_label(name: &'static str) -> &'static str {
+pub fn figure_label(name: &str) -> &str {
     match name {
         "recurring revenue" => "recurring $/month",
-        name => name,
+        name => figure_name(name),
     }
+}
+
+/// Returns the cash at the end of the last week if purchases on the same day have changed the cash since.
+pub fn cash_before_purchases(seen: &Observation) -> Option<f64> {
+    // The change of a started week in a debug run includes its days.
+    let is_decision_day = seen.day.is_multiple_of(7);
+    let before = seen.last_week.map_or(seen.starting_cash, |week| week.cash);
+    (is_decision_day && (before - seen.cash).abs() >= 0.005).then_some(before)
 }
 
 /// Describes the last change in cash and its period: `+$1,234 over the last week`.

@@ -58,7 +58,8 @@ pub mod why;
 use novamind_course::Debrief;
 
 pub use formatting::{
-    category_name, describe_cash_change, describe_first_change, describe_origin, figure_label, pluralize,
+    cash_before_purchases, category_name, describe_cash_change, describe_first_change, describe_origin,
+    figure_label, figure_name, pluralize,
 };
 pub use logbook::Logbook;
 pub use run_report::RunReport;

@@ -2,7 +2,7 @@
 
 use super::decision_periods::describe_change;
 use super::formatting::{
-    describe_short_week, format_number, format_percentage_points, format_whole, pluralize,
+    describe_short_week, figure_name, format_number, format_percentage_points, format_whole, pluralize,
 };
 use novamind_base::formatting::{dollars, grouped_number, percent};
 use novamind_insight::{CauseDetail, ChangeExplanation, InputDetail};
@@ -43,7 +43,7 @@ pub fn equation(why: &ChangeExplanation) -> String {
         cause_lines(why).iter().map(|line| format!("{} {}", line.name, line.amount_text)).collect();
     format!(
         "{} {} compared with week {} = {}",
-        why.quantity.name(),
+        figure_name(&why.quantity.name()),
         format_signed_change(why.quantity.unit(), why.total_change()),
         why.week - 1,
         parts.join(" · ")
@@ -55,7 +55,8 @@ pub fn heading(why: &ChangeExplanation) -> String {
     let value = |value| format_figure(why.quantity.unit(), value);
     let [before, number] = why.days;
     let short = describe_short_week(number, before).map_or(String::new(), |short| format!(" ({short})"));
-    format!("{}, week {}: {} → {}{short}", why.quantity.name(), why.week, value(why.before), value(why.after))
+    let name = why.quantity.name();
+    format!("{}, week {}: {} → {}{short}", figure_name(&name), why.week, value(why.before), value(why.after))
 }
 
 /// Formats a value in the unit of a figure.

@@ -76,7 +76,7 @@ const FIGURES: [Figure; 29] = [
         "SELECT count(*) FROM customers WHERE customer_type = 'small' AND created_day BETWEEN {from} AND {to}",
     ),
     Figure(
-        &["enterprise leads", "new enterprise leads"],
+        &["enterprise leads", "new enterprise leads", "offer requests"],
         "SELECT count(*) FROM enterprise_turns WHERE thread_type = 'new_lead' AND turn_number = 0 \
          AND day BETWEEN {from} AND {to}",
     ),

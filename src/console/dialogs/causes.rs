@@ -9,6 +9,7 @@ use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use novamind_insight::{Cause, CauseProgress, ChangeExplanation, WeekQuantity};
 use novamind_record::figures::WeekFigure;
+use novamind_report::figure_name;
 use novamind_report::why::{CauseLine, cause_lines, equation, heading};
 use novamind_tools::Rejection;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects, truncate_to_width};
@@ -67,7 +68,7 @@ impl CausesDialog {
             return DialogResponse::stay();
         }
         // The source rows cover only the original week of the figure.
-        let title = format!("{} in week {week}", self.quantity.name());
+        let title = format!("{} in week {week}", figure_name(&self.quantity.name()));
         let figure =
             Figure { title, sql: None, week_quantity: Some((self.quantity, week)), ..self.figure.clone() };
         DialogResponse::confirm_with(vec![Effect::ShowCauses(figure)])

@@ -6,7 +6,7 @@ use super::super::grammar::{Argument, ParseError};
 use super::super::response::CommandResponse;
 use super::{Interpreter, argument_error};
 use novamind_base::formatting::signed_dollars;
-use novamind_report::{RunReport, WeekReport, report_to_markdown};
+use novamind_report::{RunReport, WeekReport, figure_name, report_to_markdown};
 use novamind_session::IntervalPosition;
 use novamind_tools::Rejection;
 
@@ -78,7 +78,7 @@ fn describe_week(report: &WeekReport) -> String {
         lines.push(format!("decisions before the week: {}", report.decisions.join("; ")));
     }
     for moved in report.moved_figures.iter().take(MAX_LISTED_CHANGES) {
-        let mut line = format!("{} {} → {}", moved.name, moved.old, moved.new);
+        let mut line = format!("{} {} → {}", figure_name(moved.name), moved.old, moved.new);
         let standing = moved.change.describe_rarity();
         if !standing.is_empty() {
             line += &format!(", {standing}");

@@ -1,6 +1,7 @@
 //! A chart of cash by day with the selected week marked, and bars of the change in cash by week.
 
 use ratatui::layout::{Constraint, Layout, Rect};
+use unicode_width::UnicodeWidthStr;
 
 use super::model::{LedgerSubject, cash_before_and_after, days_of_week};
 use super::{Cash, SelectedSubject, ledger_rows, week_keys};
@@ -9,6 +10,8 @@ use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::{dollars, short_dollars};
+use novamind_report::cash_before_purchases;
+use novamind_session::week_of_day;
 use novamind_tui::canvas::{Align, Canvas};
 use novamind_tui::text::format_change;
 use novamind_tui::theme::Role;
@@ -42,7 +45,13 @@ impl Pane<Cash> for CurvePane {
         let note = match cash_before_and_after(company, week) {
             Some((before, after)) => {
                 let change = after - before;
-                format!("week {week}: {} {}", dollars(after), format_change(change, &dollars(change.abs())))
+                let ended = format!("end of week {week}: {} {}", dollars(after), format_change(change, &dollars(change.abs())));
+                let now = cash_before_purchases(&company.observation).filter(|_| week == week_of_day(company.observation.day));
+                let full = match now {
+                    Some(_) => format!("{ended} · now {}", dollars(company.observation.cash)),
+                    None => ended.clone(),
+                };
+                if full.width() <= note_width(area, title) { full } else { ended }
             }
             None => summary(&company.cash_by_day, &short_dollars, note_width(area, title)),
         };

@@ -136,7 +136,7 @@ fn enterprise_lines(company: &DisplayedCompany, group: Group) -> Vec<FactLine> {
     for (name, count, sql) in [
         ("arrived", funnel.enterprises, arrivals_sql.clone()),
         ("no suitable plan", funnel.lost_before_request(), arrivals_sql),
-        ("asked for an offer", funnel.requests, format!("{asked}{group_filter}")),
+        ("requested an offer", funnel.requests, format!("{asked}{group_filter}")),
         (
             "signed",
             funnel.deals,

@@ -11,6 +11,7 @@ use crate::effect::Effect;
 use crate::forecast_fan;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::{dollars, short_dollars};
+use novamind_report::cash_before_purchases;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::format_change;
 use novamind_tui::theme::Role;
@@ -35,12 +36,16 @@ impl Pane<Overview> for CashCurvePane {
     fn border(&self, _: &Overview, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let (title, company) = ("Cash", context.company);
         let change = company.observation.cash_change;
-        let moved = format!("{} {}", dollars(company.observation.cash), format_change(change, &short_dollars(change.abs())));
-        let full = match company.last_forecasts() {
-            Some((day, _)) => format!("{moved} in a week · forecast of day {day}"),
-            None => moved.clone(),
+        let moved = format_change(change, &short_dollars(change.abs()));
+        let now = dollars(company.observation.cash);
+        let forecast = company.last_forecasts().map(|(day, _)| format!(" · forecast of day {day}"));
+        // The change ends with the week, and purchases on the same day are not part of it.
+        let (least, more) = match cash_before_purchases(&company.observation) {
+            Some(before) => (format!("{now} now"), format!(" · {} {moved} at week's end", short_dollars(before))),
+            None => (format!("{now} {moved}"), forecast.map_or(String::new(), |forecast| format!(" in a week{forecast}"))),
         };
-        let note = if full.width() <= note_width(area, title) { full } else { moved };
+        let full = format!("{least}{more}");
+        let note = if full.width() <= note_width(area, title) { full } else { least };
         PaneBorder { title: title.to_owned(), note, ..PaneBorder::default() }
     }
 

@@ -4,7 +4,7 @@ use crate::context::Figure;
 use novamind_base::formatting::{dollars, grouped_number, percent};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::{WeekFigure, WeekFigures};
-use novamind_report::figure_label;
+use novamind_report::{figure_label, figure_name};
 use novamind_session::{LEDGER_WEEK_SQL, ledger_weeks_condition_sql};
 use novamind_tui::text::format_change;
 use novamind_tui::theme::Role;
@@ -25,6 +25,17 @@ pub struct Metric {
     pub more_is_better: bool,
     /// Source rows of the figure.
     rows_source: RowsSource,
+}
+
+impl Metric {
+    /// Describes what the figure includes if its name does not say it.
+    pub fn scope(&self) -> Option<&'static str> {
+        match self.name {
+            "running costs" => Some("without lead costs and purchases"),
+            "enterprise leads" => Some("by ads and word of mouth"),
+            _ => None,
+        }
+    }
 }
 
 /// Source rows of a figure.
@@ -152,7 +163,7 @@ pub static METRICS: [Metric; 22] = [
     ),
     new_metric(
         "enterprise leads",
-        "thread",
+        "enterprise-lead",
         |week| f64::from(week.new_enterprise_leads),
         format_whole,
         true,
@@ -286,7 +297,10 @@ pub fn figure(metric: &Metric, column: usize, company: &DisplayedCompany) -> Fig
     let now = to == week;
     let quantity = WeekFigure::parse_label(metric.name).and_then(WeekQuantity::for_company);
     Figure {
-        title: format!("{}, {weeks}", metric.name),
+        title: match metric.scope() {
+            Some(scope) => format!("{} ({scope}), {weeks}", figure_name(metric.name)),
+            None => format!("{}, {weeks}", figure_name(metric.name)),
+        },
         term: metric.term,
         sql: source_rows_query(&metric.rows_source, (from, to), now),
         week_quantity: None,

@@ -4,7 +4,9 @@ use crate::effect::Effect;
 use crate::screens::Screen;
 use crate::test_kit::{handle_action, only_question, session_with_negotiations, screen_text, played_screen, played_session, loaded_screen};
 use news::NewsKind;
+use novamind_base::formatting::{dollars, short_dollars};
 use novamind_database::Cell as Value;
+use novamind_record::trajectory::record::Via;
 use novamind_report::action_items::{ActionTarget, Problem};
 use novamind_session::Session;
 use novamind_worker::page_questions::PreviewCallQuestion;
@@ -83,6 +85,44 @@ fn selected_figure_title_has_name_and_weeks() {
             handle_action(&mut screen, Action::Down, &company);
         }
     }
+}
+
+#[test]
+fn figures_state_what_they_include() {
+    let (_, company, mut screen) = played_screen::<Overview>(6);
+    let title = |name: &str| {
+        let metric = METRICS.iter().find(|metric| metric.name == name).expect("a figure");
+        figures::figure(metric, 1, &company).title
+    };
+    assert_eq!(title("running costs"), "running costs (without lead costs and purchases), week 6");
+    assert_eq!(title("enterprise leads"), "offer requests (by ads and word of mouth), week 6");
+    let note = "week 6 · without lead costs and purchases";
+    assert!(!screen_text(&screen, &company, 120, 37).contains(note));
+    screen.set_focused_pane(OverviewPane::Week);
+    let row = METRICS.iter().position(|metric| metric.name == "running costs").expect("a row");
+    (0..row).for_each(|_| drop(handle_action(&mut screen, Action::Down, &company)));
+    for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
+        let text = screen_text(&screen, &company, width, height);
+        assert!(text.contains(note), "{text}");
+    }
+    assert!(screen_text(&screen, &company, 120, 37).contains("offer requests"));
+}
+
+#[test]
+fn cash_after_a_purchase_is_shown_next_to_the_cash_of_the_week() {
+    let mut session = played_session(3);
+    let ended = session.company().observe().cash;
+    session.call("start_research_project", &serde_json::json!({"tier": 1}), Via::Form).expect("a project");
+    let company = DisplayedCompany::from_session(&session);
+    let now = company.observation.cash;
+    assert_eq!(novamind_report::cash_before_purchases(&company.observation), Some(ended));
+    let screen: Overview = loaded_screen(&mut session, &company);
+    for (width, height) in [(80, 21), (120, 37), (200, 57)] {
+        let text = screen_text(&screen, &company, width, height);
+        assert!(text.contains(&format!("{} now", dollars(now))), "{text}");
+    }
+    let text = screen_text(&screen, &company, 200, 57);
+    assert!(text.contains(&format!("now · {} ", short_dollars(ended))) && text.contains("at week's end"), "{text}");
 }
 
 #[test]

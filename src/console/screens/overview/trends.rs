@@ -22,7 +22,7 @@ static CHARTS: [(&str, &str); 6] = [
     ("individual leads", "Individual leads"),
     ("cancellations", "Cancellations"),
     ("payments", "Payments"),
-    ("running costs", "Running costs"),
+    ("running costs", "Running costs without lead costs"),
 ];
 
 /// Draws as many charts as fit, two per row.

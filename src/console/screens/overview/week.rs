@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::Overview;
+use super::{Overview, OverviewPane};
 use super::figures::{self, METRICS};
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext, ScreenId};
@@ -46,8 +46,11 @@ impl Pane<Overview> for WeekPane {
     }
 
     fn border(&self, overview: &Overview, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let selected = overview.week.selected().filter(|_| overview.focus == OverviewPane::Week);
+        let scope = selected.and_then(|row| METRICS.get(row)?.scope());
         let note = match overview.week.summary() {
             note if note.is_empty() => match &context.company.observation.last_week {
+                Some(week) if scope.is_some() => format!("week {} · {}", week_of_day(week.day), scope.unwrap_or_default()),
                 Some(week) => format!("week {} · to day {}", week_of_day(week.day), week.day),
                 None => "no week yet".to_owned(),
             },
@@ -65,7 +68,7 @@ impl Pane<Overview> for WeekPane {
 fn details_screen(term: &str) -> ScreenId {
     match term {
         "cash" | "payments" | "running-costs" => ScreenId::Cash,
-        "thread" | "seats" => ScreenId::Inbox,
+        "enterprise-lead" | "seats" => ScreenId::Inbox,
         "usage" | "overload" | "outage" | "latency" | "error-rate" | "issue" => ScreenId::Product,
         _ => ScreenId::Customers,
     }

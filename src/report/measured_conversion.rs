@@ -146,7 +146,7 @@ mod tests {
         session.call("set_prices", &json!({"A": 19}), Via::Script).expect("a price");
         let measured = MeasuredConversion::of_group(&session, group("S1"));
         assert!(
-            measured.describe().ends_with("; you changed the plans on day 35"),
+            measured.describe().ends_with("; you changed the plans on days 14 and 35"),
             "{}",
             measured.describe()
         );
@@ -158,6 +158,8 @@ mod tests {
             "{}",
             measured.describe()
         );
+        let once = MeasuredConversion { changed_on: vec![35], ..measured.clone() };
+        assert!(once.describe().ends_with("; you changed the plans on day 35"), "{}", once.describe());
         let often = MeasuredConversion { changed_on: (30..40).collect(), ..measured };
         assert!(
             often.describe().ends_with("; you changed the plans on 10 days, last on day 39"),

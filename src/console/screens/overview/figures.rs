@@ -31,7 +31,7 @@ impl Metric {
     /// Describes what the figure includes if its name does not say it.
     pub fn scope(&self) -> Option<&'static str> {
         match self.name {
-            "running costs" => Some("without lead costs and purchases"),
+            "running costs" => Some("no lead costs or purchases"),
             "enterprise leads" => Some("by ads and word of mouth"),
             _ => None,
         }

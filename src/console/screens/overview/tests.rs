@@ -94,14 +94,15 @@ fn figures_state_what_they_include() {
         let metric = METRICS.iter().find(|metric| metric.name == name).expect("a figure");
         figures::figure(metric, 1, &company).title
     };
-    assert_eq!(title("running costs"), "running costs (without lead costs and purchases), week 6");
+    assert_eq!(title("running costs"), "running costs (no lead costs or purchases), week 6");
     assert_eq!(title("enterprise leads"), "offer requests (by ads and word of mouth), week 6");
-    let note = "week 6 · without lead costs and purchases";
+    let note = "week 6 · no lead costs or purchases";
     assert!(!screen_text(&screen, &company, 120, 37).contains(note));
     screen.set_focused_pane(OverviewPane::Week);
     let row = METRICS.iter().position(|metric| metric.name == "running costs").expect("a row");
     (0..row).for_each(|_| drop(handle_action(&mut screen, Action::Down, &company)));
-    for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
+    // Narrower panes have no room for the note. There, the title of the figure states what it includes.
+    for (width, height) in [(120, 37), (200, 57)] {
         let text = screen_text(&screen, &company, width, height);
         assert!(text.contains(note), "{text}");
     }
@@ -112,7 +113,8 @@ fn figures_state_what_they_include() {
 fn cash_after_a_purchase_is_shown_next_to_the_cash_of_the_week() {
     let mut session = played_session(3);
     let ended = session.company().observe().cash;
-    session.call("start_research_project", &serde_json::json!({"tier": 1}), Via::Form).expect("a project");
+    let study = serde_json::json!({"group_id": "S1", "target_level": 2});
+    session.call("research_group", &study, Via::Form).expect("a study");
     let company = DisplayedCompany::from_session(&session);
     let now = company.observation.cash;
     assert_eq!(novamind_report::cash_before_purchases(&company.observation), Some(ended));

@@ -115,7 +115,7 @@ impl CommandPalette {
     pub fn for_participant(mut self, has_tour: bool) -> CommandPalette {
         let kept = |action: Action| match action {
             Action::LeaveRun | Action::WriteReport => false,
-            Action::Tour | Action::TourSkip | Action::TourBack | Action::TourClose => has_tour,
+            Action::Tour | Action::TourContinue | Action::TourBack | Action::TourClose => has_tour,
             _ => true,
         };
         self.entries.retain(|entry| !matches!(entry.effect, Effect::Execute(action) if !kept(action)));

@@ -385,8 +385,15 @@ fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     if let Some((text, role)) = &right
         && text.width() as u16 + 2 > row.width
     {
-        return draw_long_message(canvas, row, text, *role);
+        // The tour above the footer names the next keys, so it stays visible.
+        let tour = app.run().and_then(|run| run.tour.as_ref()).map_or(0, |tour| tour.height(row.width));
+        let last = Rect { y: row.y.saturating_sub(tour), ..row };
+        draw_long_message(canvas, last, text, *role);
+        if tour == 0 {
+            return;
+        }
     }
+    let right = right.filter(|(text, _)| text.width() as u16 + 2 <= row.width);
     // A message has two spaces before it and one space after it.
     let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 3).min(row.width);
     let mut x = row.x + 1;
@@ -423,16 +430,16 @@ fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     }
 }
 
-/// Draws a message that is wider than the footer into the footer and the rows above it, so that its end, which usually
-/// names the next step, is visible.
-fn draw_long_message(canvas: &mut Canvas<'_>, footer: Rect, text: &str, role: Role) {
-    let mut lines = wrap(text, usize::from(footer.width.saturating_sub(2)));
+/// Draws a message that is wider than the window into a row and the rows above it, so that its end, which usually names
+/// the next step, is visible.
+fn draw_long_message(canvas: &mut Canvas<'_>, last: Rect, text: &str, role: Role) {
+    let mut lines = wrap(text, usize::from(last.width.saturating_sub(2)));
     if lines.len() > MAX_MESSAGE_ROWS {
         let rest = lines.split_off(MAX_MESSAGE_ROWS - 1).join(" ");
         lines.push(rest);
     }
-    let height = (lines.len() as u16).min(footer.bottom());
-    let area = Rect { y: footer.bottom() - height, height, ..footer };
+    let height = (lines.len() as u16).min(last.bottom());
+    let area = Rect { y: last.bottom() - height, height, ..last };
     canvas.clear(area, Role::Text);
     for (row, line) in row_rects(area).zip(&lines) {
         canvas.draw_text(Rect { x: row.x + 1, width: row.width.saturating_sub(2), ..row }, line, role);

@@ -18,7 +18,7 @@ use novamind_tui::theme::Role;
 
 /// Width of the longest description of a figure that is a title. A longer description, such as the text of an action
 /// item, is a part of the explanation.
-const MAX_FIGURE_TITLE: usize = 36;
+pub(super) const MAX_FIGURE_TITLE: usize = 36;
 
 #[derive(Debug, Clone, Copy)]
 enum Link {

@@ -239,6 +239,9 @@ impl App {
             }
             None => self.show_status(format!("day {}: welcome back", company.observation.day)),
         }
+        if let (Some(problem), false) = (self.own_commands.problem_summary(), self.has_participant()) {
+            self.show_error(problem);
+        }
         self.stage = Stage::Run(Box::new(Run {
             company: company.clone(),
             screen: here,

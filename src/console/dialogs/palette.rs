@@ -147,13 +147,17 @@ impl CommandPalette {
             effect: Effect::RunOwnCommand(at),
         };
         self.entries.extend(own.commands.iter().enumerate().map(entry));
-        self.entries.extend(own.problems.iter().map(|problem| PaletteEntry {
-            kind: "error",
-            code: "",
-            title: COMMANDS_FILE.to_owned(),
-            doc: problem.clone(),
-            keys: String::new(),
-            effect: Effect::ShowText(COMMANDS_FILE.to_owned(), problem.clone()),
+        self.entries.extend(own.problems.iter().map(|problem| {
+            // A problem begins with its file and line.
+            let (title, doc) = problem.split_once(": ").unwrap_or((COMMANDS_FILE, problem));
+            PaletteEntry {
+                kind: "error",
+                code: "",
+                title: title.to_owned(),
+                doc: doc.to_owned(),
+                keys: String::new(),
+                effect: Effect::ShowText(COMMANDS_FILE.to_owned(), problem.clone()),
+            }
         }));
         self.update_matches();
         self

@@ -80,7 +80,9 @@ impl App {
             Some(tour) if tour.is_step_done(&run.company) => tour.continue_to_next_step(),
             Some(_) => {
                 let close = self.keys.label(Action::TourClose).unwrap_or_default();
-                self.show_error(format!("this step is not done: press the keys after →; {close} closes the tour"));
+                self.show_error(format!(
+                    "this step is not done: press the keys after →; {close} closes the tour"
+                ));
             }
             None => self.show_error("no tour is shown"),
         }

@@ -114,7 +114,8 @@ impl App {
     /// Returns the keys that answer the question of a confirmation, if one is shown.
     fn answer_keys(&self) -> Option<String> {
         let hints = self.hints();
-        let label = |action: &Action| Some(format!("{} ({})", self.keys.label(*action)?, action.entry().title));
+        let label =
+            |action: &Action| Some(format!("{} ({})", self.keys.label(*action)?, action.entry().title));
         let is_confirmation = hints.contains(&Action::Confirm);
         is_confirmation.then(|| hints.iter().filter_map(label).collect::<Vec<_>>().join(" or "))
     }

@@ -358,13 +358,17 @@ mod tests {
 
     #[test]
     fn long_description_of_a_figure_is_a_part_of_the_explanation() {
-        let title = "12 enterprises wait for an answer (356 seats, $43,818 a month at requested prices)".to_owned();
+        let title =
+            "12 enterprises wait for an answer (356 seats, $43,818 a month at requested prices)".to_owned();
         let long = Figure { title, ..figure("thread", None) };
         let dialog = ExplainDialog::for_figure(&long, ParameterNumbers::bundled().into());
         let shown = dialog_text(&dialog, &new_company(), 60, 13);
         assert!(!shown.lines().next().expect("a title").contains('…'), "{shown}");
         let words = shown.replace(['┃', '↓', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(words.contains("wait for an answer (356 seats, $43,818 a month at requested prices)."), "{shown}");
+        assert!(
+            words.contains("wait for an answer (356 seats, $43,818 a month at requested prices)."),
+            "{shown}"
+        );
     }
 
     #[test]

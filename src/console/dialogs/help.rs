@@ -9,8 +9,8 @@ use crate::keys::KeyBindings;
 use novamind_tui::canvas::{Canvas, centered_rect, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::editor::EDITING_KEYS;
 use novamind_tui::widgets::column_layout::ColumnLayout;
+use novamind_tui::widgets::editor::EDITING_KEYS;
 use novamind_tui::widgets::{Table, TableCell, TableColumn};
 
 /// The help dialog.
@@ -277,7 +277,8 @@ mod tests {
         let company = new_company();
         for row in help.rows() {
             let shown = dialog_text(&help, &company, 60, 13);
-            let words = shown.replace(['┃', '↓', '↑', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
+            let words =
+                shown.replace(['┃', '↓', '↑', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
             assert!(words.contains(&row[3]) && !words.contains('…'), "{}:\n{shown}", row[3]);
             dialog_action(&mut help, Action::Down, &company);
         }

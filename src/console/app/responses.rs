@@ -239,7 +239,10 @@ impl App {
             }
             None => self.show_status(format!("day {}: welcome back", company.observation.day)),
         }
-        if let (Some(problem), false) = (self.own_commands.problem_summary(), self.has_participant()) {
+        if company.remarks.is_empty()
+            && !self.has_participant()
+            && let Some(problem) = self.own_commands.problem_summary()
+        {
             self.show_error(problem);
         }
         self.stage = Stage::Run(Box::new(Run {

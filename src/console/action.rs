@@ -277,7 +277,7 @@ actions! {
         Lesson "lesson" "lesson" "In a lesson: show or hide the task next to the screen; in a small window, open it as a page."
         LessonPage "lesson-page" "task" "In a lesson: open the whole task as a page, with its question, hints and goals."
         Tour "tour" "tour" "Resume the tour in its run or in a practice run; start it from the start menu."
-        TourSkip "tour-skip" "skip" "Continue with the next step of the tour, or skip a step."
+        TourContinue "tour-skip" "continue" "Continue with the next step of the tour after you have done what the step asks for."
         TourBack "tour-back" "back" "Go back to the previous step of the tour."
         TourClose "tour-close" "close" "Close the tour; it can be resumed at any time."
         NextTheme "next-theme" "next theme" "Switch to the next color theme."

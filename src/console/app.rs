@@ -258,8 +258,7 @@ impl App {
         let library = QueryLibrary::load(&settings.configuration);
         let column_layouts = Preferences::load(&settings.configuration).tables;
         let own_commands = OwnCommands::load(&settings.configuration, &settings.keys, &library);
-        let status = own_commands.problems.first();
-        let status = status.map(|problem| StatusMessage { text: problem.clone(), is_error: true });
+        let status = own_commands.problem_summary().map(|text| StatusMessage { text, is_error: true });
         App {
             library,
             own_commands,

@@ -48,7 +48,9 @@ pub fn draw_frame(app: &App, buffer: &mut Buffer) -> DrawnFrame {
             "NovaMind needs {}×{} or more; this is {}×{}",
             MIN_WINDOW.0, MIN_WINDOW.1, area.width, area.height
         );
-        canvas.draw_text(Rect { height: 1.min(area.height), ..area }, &text, Role::Warning);
+        for (row, line) in row_rects(area).zip(wrap(&text, usize::from(area.width))) {
+            canvas.draw_text(row, &line, Role::Warning);
+        }
     } else {
         draw_stage(app, &mut canvas, area);
     }
@@ -368,6 +370,9 @@ fn tab_badge(run: &Run, screen: ScreenId) -> String {
     if count > 0 { format!(" ●{count}") } else { String::new() }
 }
 
+/// Maximum number of rows of a message.
+const MAX_MESSAGE_ROWS: usize = 4;
+
 /// Label of the footer while keys type characters.
 const EDIT_MODE: &str = " EDIT ";
 
@@ -385,6 +390,18 @@ fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
         (None, Some(note)) => Some((note.text.clone(), Role::Good)),
         (None, None) => None,
     };
+    if let Some((text, role)) = &right
+        && text.width() as u16 + 2 > row.width
+    {
+        // The tour above the footer names the next keys, so it stays visible.
+        let tour = app.run().and_then(|run| run.tour.as_ref()).map_or(0, |tour| tour.height(row.width));
+        let last = Rect { y: row.y.saturating_sub(tour), ..row };
+        draw_long_message(canvas, last, text, *role);
+        if tour == 0 {
+            return;
+        }
+    }
+    let right = right.filter(|(text, _)| text.width() as u16 + 2 <= row.width);
     // A message has two spaces before it and one space after it.
     let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 3).min(row.width);
     let mut x = row.x + 1;
@@ -418,6 +435,22 @@ fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     if let Some((text, role)) = right {
         let place = Rect { x: row.right() - taken + 2.min(taken), width: taken.saturating_sub(2), ..row };
         canvas.draw_text(place, &text, role);
+    }
+}
+
+/// Draws a message that is wider than the window into a row and the rows above it, so that its end, which usually names
+/// the next step, is visible.
+fn draw_long_message(canvas: &mut Canvas<'_>, last: Rect, text: &str, role: Role) {
+    let mut lines = wrap(text, usize::from(last.width.saturating_sub(2)));
+    if lines.len() > MAX_MESSAGE_ROWS {
+        let rest = lines.split_off(MAX_MESSAGE_ROWS - 1).join(" ");
+        lines.push(rest);
+    }
+    let height = (lines.len() as u16).min(last.bottom());
+    let area = Rect { y: last.bottom() - height, height, ..last };
+    canvas.clear(area, Role::Text);
+    for (row, line) in row_rects(area).zip(&lines) {
+        canvas.draw_text(Rect { x: row.x + 1, width: row.width.saturating_sub(2), ..row }, line, role);
     }
 }
 

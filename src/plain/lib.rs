@@ -29,7 +29,7 @@ use commands::Interpreter;
 use end_reason::EndReason;
 use input::InputLine;
 use line_source::LineSource;
-use novamind_base::formatting::escape_control_characters;
+use novamind_base::formatting::{escape_control_characters, pluralize};
 use novamind_record::folder::query_library::QueryLibrary;
 use novamind_record::trajectory::record::DetachCause;
 use novamind_session::{Interface, Session};
@@ -69,7 +69,8 @@ fn run_dialogue(
     interpreter.code_check = study.and_then(Study::code_check);
     interpreter.is_participant = study.is_some();
     let mut out = io::stdout();
-    let end = command_loop(&mut interpreter, lines, &mut out, style, study);
+    let mut unsaved = 0;
+    let end = command_loop(&mut interpreter, lines, &mut out, style, study, &mut unsaved);
     // An output error means that the terminal was closed or that the reader of the output has ended.
     interpreter
         .session
@@ -90,6 +91,12 @@ fn run_dialogue(
         EndReason::Signal(_) => {}
         _ => farewell?,
     }
+    if unsaved > 0 && study.is_none() && end.exit_code() == 0 {
+        let lines = pluralize(unsaved, "line");
+        return Err(io::Error::other(format!(
+            "{lines} had no effect, because the record could not be written; every line that was answered with ok is saved"
+        )));
+    }
     Ok((end, interpreter.session))
 }
 
@@ -99,6 +106,7 @@ fn command_loop(
     out: &mut io::Stdout,
     style: OutputStyle,
     study: Option<&Study>,
+    unsaved: &mut u32,
 ) -> io::Result<EndReason> {
     greet(out, &interpreter.session, style)?;
     if let Some(command_response) = interpreter.restore_limit_pause() {
@@ -142,6 +150,7 @@ fn command_loop(
         if reply.is_quit() {
             return Ok(EndReason::Quit);
         }
+        *unsaved += u32::from(reply.is_not_saved());
         print_response(out, style, number, style.echo.then_some(line.as_str()), &reply, day)?;
         if lines.signal_watch().caught_signal().is_some() {
             return Ok(lines.end_reason());

@@ -91,6 +91,11 @@ impl CommandResponse {
         matches!(self, CommandResponse::Success { .. })
     }
 
+    /// Returns whether the command was rejected because its line could not be written to the record.
+    pub fn is_not_saved(&self) -> bool {
+        matches!(self, CommandResponse::Rejected { rejection, .. } if rejection.code == "not_saved")
+    }
+
     /// Returns whether the command ends the session.
     pub fn is_quit(&self) -> bool {
         matches!(self, CommandResponse::Quit)

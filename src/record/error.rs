@@ -130,6 +130,15 @@ pub enum RunError {
         /// Folder that was searched.
         folder: PathBuf,
     },
+    /// All runs have ended, so there is no run to continue.
+    #[error(
+        "all runs in {folder} have ended; start a new run with `novamind play`, or watch the newest run with `novamind replay latest`",
+        folder = .folder.display()
+    )]
+    AllRunsEnded {
+        /// Folder that was searched.
+        folder: PathBuf,
+    },
     /// The run does not exist.
     #[error("there is no run {id} in {folder}; `novamind runs` lists the runs", folder = .folder.display())]
     NotFound {

@@ -161,16 +161,16 @@ impl<'a> Canvas<'a> {
         let path = Some(in_room(room.saturating_sub(note.width() + 6)))
             .filter(|path| !path.is_empty())
             .unwrap_or_else(|| in_room(room.saturating_sub(2)));
+        let title = fitting_title(title, room.saturating_sub(path.width() + 2));
         if !title.is_empty() && room > 0 {
             let before =
                 self.span(if path.is_empty() { " ".to_owned() } else { format!(" {path}") }, Role::Dim);
-            let text = format!("{} ", truncate_to_width(title, room.saturating_sub(path.width() + 2)));
-            block = block.title(Line::from(vec![before, self.span(text, Role::Title)]));
+            block = block.title(Line::from(vec![before, self.span(format!("{title} "), Role::Title)]));
         }
         let left = path.width() + title.width() + 3;
-        if !note.is_empty() && room > left + 4 {
-            let text = format!(" {} ", fitting_items(&note, room - left - 2));
-            block = block.title(Line::from(self.span(text, Role::Dim)).right_aligned());
+        let note = fitting_items(&note, room.saturating_sub(left + 2));
+        if !note.is_empty() {
+            block = block.title(Line::from(self.span(format!(" {note} "), Role::Dim)).right_aligned());
         }
         let inside = block.inner(area);
         block.render(area.intersection(self.buffer.area), self.buffer);
@@ -183,7 +183,11 @@ impl<'a> Canvas<'a> {
             return;
         }
         let row = Rect { x: area.x + 2, y: area.bottom() - 1, width: area.width - 4, height: 1 };
-        let shown = format!(" {} ", fitting_items(text, row.width.saturating_sub(2) as usize));
+        let shown = fitting_items(text, row.width.saturating_sub(2) as usize);
+        if shown.is_empty() {
+            return;
+        }
+        let shown = format!(" {shown} ");
         let width = shown.width() as u16;
         self.draw_text(Rect { width: width.min(row.width), ..row }, &shown, Role::Text);
     }
@@ -263,17 +267,25 @@ fn breadcrumb_prefix(path: &[String], title: &str, room: usize) -> String {
     (0..path.len()).map(words).find(fits).unwrap_or_default()
 }
 
-/// Truncates a list of keys or notes between items. Only the first item is cut off if it does not fit.
+/// Returns the first items of a list of keys or notes that fit into a width. No item is cut.
 fn fitting_items(text: &str, width: usize) -> String {
     let mut shown = String::new();
     for key in text.split(" · ") {
         let longer = if shown.is_empty() { key.to_owned() } else { format!("{shown} · {key}") };
-        if !shown.is_empty() && longer.width() > width {
+        if longer.width() > width {
             break;
         }
         shown = longer;
     }
-    truncate_to_width(&shown, width)
+    shown
+}
+
+/// Shortens a title to a width by omitting its last items. Only the first item is cut if it does not fit.
+fn fitting_title(title: &str, width: usize) -> String {
+    match fitting_items(title, width) {
+        items if items.is_empty() => truncate_to_width(title, width),
+        items => items,
+    }
 }
 
 /// Returns the rows of an area. Each row is one cell high.
@@ -346,7 +358,22 @@ mod tests {
     fn pane_keys_are_never_truncated() {
         assert_eq!(fitting_items("y yes · esc close · ? help", 17), "y yes · esc close");
         assert_eq!(fitting_items("y yes · esc close · ? help", 16), "y yes");
-        assert_eq!(fitting_items("enter begins it", 8), "enter b…");
+        assert_eq!(fitting_items("enter begins it", 8), "");
+    }
+
+    #[test]
+    fn titles_and_notes_omit_items_that_do_not_fit() {
+        let theme = Theme::bundled("mono").expect("a theme");
+        let border = |title: &str, note: &str, width| {
+            let mut buffer = Buffer::empty(Rect::new(0, 0, width, 2));
+            let area = buffer.area;
+            Canvas::new(&mut buffer, &theme).draw_pane_frame(area, title, note, false);
+            (0..width).map(|x| buffer[(x, 0)].symbol()).collect::<String>()
+        };
+        assert_eq!(border("prices · PRC", "from tomorrow", 34), "┌ prices · PRC ─── from tomorrow ┐");
+        assert_eq!(border("prices · PRC", "from tomorrow", 33), "┌ prices · PRC ─────────────────┐");
+        assert_eq!(border("prices · PRC", "from tomorrow", 15), "┌ prices ─────┐");
+        assert_eq!(border("prices · PRC", "", 10), "┌ pri… ──┐");
     }
 
     #[test]

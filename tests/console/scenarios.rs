@@ -267,11 +267,11 @@ fn group_report_links_to_its_customers() {
     console.press("r y");
     console.assert_shows("due on day 5");
     console.press("enter");
-    console.assert_shows("S2 · individual");
+    console.assert_shows("S2 · Quality-Focused");
     console.press("end up enter");
     console.assert_shows("study to level 3 due on day 5");
     console.press("backspace");
-    console.assert_shows("S2 · individual");
+    console.assert_shows("S2 · Quality-Focused");
     console.press("7 m y");
     console.assert_shows("of 1 found · $25,000 · next");
 }

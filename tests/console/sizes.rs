@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use novamind::tui::glyphs::Glyphs;
+use novamind::tui::theme::{Role, Theme};
+use ratatui::buffer::Buffer;
 
 use super::harness::Console;
 
@@ -220,6 +222,52 @@ fn start_menu_fits_every_window() {
         assert_eq!(console.screen(), before);
         assert!(words.truncated_words().is_empty(), "{:#?}", words.truncated_words());
     }
+}
+
+/// Sizes of windows in which every title, heading and label is complete.
+const LABEL_SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (100, 30), (120, 40)];
+
+/// Returns the rows in which a title, a heading or a label in a border ends with an ellipsis. The theme of the tests
+/// gives titles and headings styles that no other text has.
+fn cut_labels(buffer: &Buffer, theme: &Theme) -> Vec<String> {
+    let is_cut = |x: u16, y: u16| {
+        let cell = &buffer[(x, y)];
+        let has_role = |role| {
+            let style = theme.style(role);
+            style.fg == Some(cell.fg) && cell.modifier.contains(style.add_modifier)
+        };
+        let in_border = || {
+            let next = (x + 1..=x + 2).filter_map(|x| buffer.cell((x, y)));
+            next.last().is_some_and(|cell| "─━┐┓┘┛".contains(cell.symbol()))
+        };
+        cell.symbol() == "…" && (has_role(Role::Title) || has_role(Role::Header) || in_border())
+    };
+    let row = |y| (0..buffer.area.width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+    (0..buffer.area.height)
+        .filter(|y| (0..buffer.area.width).any(|x| is_cut(x, *y)))
+        .map(|y| row(y).trim_end().to_owned())
+        // After the first key of a sequence, the ellipsis stands for the next key.
+        .filter(|row| !row.contains("┏ g … "))
+        .collect()
+}
+
+#[test]
+fn no_title_heading_or_label_is_cut() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = console_in_played_run(runs.path());
+    let mut cut = BTreeSet::new();
+    for (open, close) in PLACES {
+        console.press(open);
+        for size in LABEL_SIZES {
+            console.size = size;
+            let buffer = console.draw();
+            let rows = cut_labels(&buffer, &console.app.theme);
+            cut.extend(rows.into_iter().map(|row| format!("{open} at {size:?}: {row}")));
+        }
+        console.size = (120, 40);
+        console.press(close);
+    }
+    assert!(cut.is_empty(), "{} labels are cut:\n{cut:#?}", cut.len());
 }
 
 #[test]

@@ -330,7 +330,8 @@ fn runs_are_listed_found_and_named() {
     assert!(open.ends_with(&first.manifest().id));
     assert!(find_run_to_read(folder.path(), "latest").is_ok());
     first.abandon().expect("given up");
-    assert!(find_run(folder.path(), "latest").is_err(), "nothing is left to play");
+    let ended = find_run(folder.path(), "latest").expect_err("nothing is left to play").to_string();
+    assert!(ended.contains("have ended; start a new run with `novamind play`"), "{ended}");
     assert!(find_run_to_read(folder.path(), "latest").is_ok(), "something is left to read");
 }
 

@@ -82,6 +82,10 @@ impl App {
         }
         let depth = run.screens.get(run.screen).escape_depth();
         let Some(stop) = run.breadcrumbs.pop_if(|stop| depth <= stop.escape_depth) else { return false };
+        let discarded = match run.screen {
+            ScreenId::Tools => run.screens.tools.discard_suggestion(&run.company),
+            _ => Vec::new(),
+        };
         if run.back_history.last() == Some(&stop.screen) {
             run.back_history.pop();
             run.forward_history.push(run.screen);
@@ -89,6 +93,7 @@ impl App {
         self.switch_screen(stop.screen);
         self.request_screen_data();
         self.with_screen(|screen, _| screen.set_focus(stop.pane));
+        self.execute_effects(discarded);
         true
     }
 }

@@ -1,6 +1,7 @@
 //! Drafts: unsent texts are saved with the run while the user edits them. The console offers the saved drafts when the
 //! run is opened again.
 
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use super::{App, Layer, Stage};
@@ -8,12 +9,15 @@ use crate::dialogs::restore_drafts::RestoreDraftsDialog;
 use novamind_record::trajectory::record::{TextEdit, TextEditOutcome};
 use novamind_session::DraftTexts;
 
-const SAVE_INTERVAL: Duration = Duration::from_secs(3);
+/// Maximum time between a change of a draft and its storage. A draft that is younger is lost if the program is killed.
+const SAVE_INTERVAL: Duration = Duration::from_secs(1);
 
 #[derive(Default)]
 pub(super) struct DraftState {
     /// The drafts that were saved last, or `None` if unknown.
     saved: Option<DraftTexts>,
+    /// Error of the last attempt to save the drafts.
+    error: Arc<Mutex<Option<String>>>,
     /// Time of the next check for changed drafts.
     due: Option<Duration>,
     /// Drafts of an earlier session that the user has not restored or discarded yet. The draft file stays until the
@@ -40,10 +44,20 @@ impl App {
     pub(super) fn save_drafts(&mut self) {
         self.drafts.due = None;
         let texts = self.collect_drafts();
-        if self.drafts.offered_drafts.is_none() && self.drafts.saved.as_ref() != Some(&texts) {
+        let is_saved = self.drafts.saved.as_ref() == Some(&texts) && self.draft_save_error().is_none();
+        if self.drafts.offered_drafts.is_none() && !is_saved {
             self.drafts.saved = Some(texts.clone());
-            self.record(move |session| session.draft_file().save(&texts));
+            let result = self.drafts.error.clone();
+            self.record(move |session| {
+                let error = session.draft_file().save(&texts).err().map(|error| error.to_string());
+                *result.lock().unwrap_or_else(PoisonError::into_inner) = error;
+            });
         }
+    }
+
+    /// Returns the error of the last attempt to save the drafts.
+    pub(super) fn draft_save_error(&self) -> Option<String> {
+        self.drafts.error.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     fn collect_drafts(&self) -> DraftTexts {

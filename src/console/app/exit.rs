@@ -51,7 +51,13 @@ impl App {
             // Offers cannot be sent after the end of the run.
             (is_running || screen != ScreenId::Inbox) && run.screens.get(screen).has_unsent_text()
         });
-        let outcome = if is_running { DRAFTS_KEPT } else { DRAFTS_DISCARDED };
+        let outcome = match self.draft_save_error() {
+            _ if !is_running => DRAFTS_DISCARDED.to_owned(),
+            None => DRAFTS_KEPT.to_owned(),
+            Some(error) => format!(
+                "Unsent text could not be saved with the run ({error}), and will be lost if you leave. Send it first, or free space on the disk and change the text, so that it is saved again."
+            ),
+        };
         (run.next_week.has_draft() || has_text).then(|| format!("{outcome} Leave this run now?"))
     }
 

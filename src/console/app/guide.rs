@@ -74,9 +74,16 @@ impl App {
         run.tour.get_or_insert_default();
     }
 
-    pub(super) fn skip_tour_step(&mut self) {
-        match self.running_tour() {
-            Some(tour) => tour.continue_to_next_step(),
+    pub(super) fn continue_tour(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        match &mut run.tour {
+            Some(tour) if tour.is_step_done(&run.company) => tour.continue_to_next_step(),
+            Some(_) => {
+                let close = self.keys.label(Action::TourClose).unwrap_or_default();
+                self.show_error(format!(
+                    "this step is not done: press the keys after →; {close} closes the tour"
+                ));
+            }
             None => self.show_error("no tour is shown"),
         }
     }
@@ -100,13 +107,6 @@ impl App {
             None => format!("{} tour", self.keys.label(Action::Palette).unwrap_or_default()),
         };
         self.show_status(format!("tour closed; {way} resumes the tour"));
-    }
-
-    fn running_tour(&mut self) -> Option<&mut tour::Tour> {
-        match &mut self.stage {
-            Stage::Run(run) => run.tour.as_mut(),
-            Stage::Menu(_) | Stage::Study(_) => None,
-        }
     }
 
     pub(super) fn advance_tour(&mut self) {

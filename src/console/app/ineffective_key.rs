@@ -111,7 +111,19 @@ impl App {
         }
     }
 
+    /// Returns the keys that answer the question of a confirmation, if one is shown.
+    fn answer_keys(&self) -> Option<String> {
+        let hints = self.hints();
+        let label =
+            |action: &Action| Some(format!("{} ({})", self.keys.label(*action)?, action.entry().title));
+        let is_confirmation = hints.contains(&Action::Confirm);
+        is_confirmation.then(|| hints.iter().filter_map(label).collect::<Vec<_>>().join(" or "))
+    }
+
     fn reason_of_unbound_key(&self, key: &str, chords: &[Chord]) -> String {
+        if let Some(answers) = self.answer_keys() {
+            return format!("{key} is not an answer; press {answers}");
+        }
         let global = match self.keys.meaning(&[Scope::Global], chords) {
             KeyMeaning::Action(action) => Some(action.entry().title),
             _ => None,

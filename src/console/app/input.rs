@@ -122,7 +122,7 @@ impl App {
 
     /// Returns an action that works even while a dialog is open. Quitting and redrawing must always be possible.
     fn always_available_action(&self, chord: Chord) -> Option<Action> {
-        let always = [Action::Quit, Action::Redraw, Action::TourSkip, Action::TourBack, Action::TourClose];
+        let always = [Action::Quit, Action::Redraw, Action::TourContinue, Action::TourBack, Action::TourClose];
         let global = self.keys.action(&[Scope::Global], chord)?;
         (always.contains(&global) && !chord.is_text_input()).then_some(global)
     }
@@ -216,7 +216,7 @@ impl App {
         match action {
             Action::Quit => return self.quit(),
             Action::Redraw => return self.orders.push(Order::Redraw),
-            Action::TourSkip => return self.skip_tour_step(),
+            Action::TourContinue => return self.continue_tour(),
             Action::TourBack => return self.return_to_previous_tour_step(),
             Action::TourClose => return self.close_tour(),
             Action::ExternalEditor => return self.open_external_editor(),

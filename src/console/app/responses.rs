@@ -239,6 +239,12 @@ impl App {
             }
             None => self.show_status(format!("day {}: welcome back", company.observation.day)),
         }
+        if company.remarks.is_empty()
+            && !self.has_participant()
+            && let Some(problem) = self.own_commands.problem_summary()
+        {
+            self.show_error(problem);
+        }
         self.stage = Stage::Run(Box::new(Run {
             company: company.clone(),
             screen: here,

@@ -64,8 +64,13 @@ impl CausesDialog {
     /// Requests the causes for another week, if that week has a previous week.
     fn change_week(&self, week: u32, context: &ScreenContext<'_>) -> DialogResponse {
         let last = context.company.weeks.len() as u32;
-        if !(2..=last).contains(&week) {
-            return DialogResponse::stay();
+        let limit = match week {
+            ..2 => Some("week 2 is the first week that can be compared with the week before".to_owned()),
+            week if week > last => Some(format!("week {last} is the newest week")),
+            _ => None,
+        };
+        if let Some(limit) = limit {
+            return DialogResponse::stay_with(vec![Effect::ShowStatus(limit)]);
         }
         // The source rows cover only the original week of the figure.
         let title = format!("{} in week {week}", figure_name(&self.quantity.name()));
@@ -342,7 +347,9 @@ mod tests {
         }
         for (week, action) in [(2, Action::Left), (4, Action::Right)] {
             let (mut dialog, _) = CausesDialog::new(question_figure(), cancellations(), week);
-            assert!(dialog_action(&mut dialog, action, &company).effects.is_empty());
+            let outcome = dialog_action(&mut dialog, action, &company);
+            let [Effect::ShowStatus(reason)] = &outcome.effects[..] else { panic!("{:?}", outcome.effects) };
+            assert!(!outcome.closes && reason.starts_with(&format!("week {week} is the ")), "{reason}");
         }
     }
 

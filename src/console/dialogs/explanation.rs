@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
+use unicode_width::UnicodeWidthStr;
 
 use super::{Dialog, DialogResponse, glossary_picture};
 use crate::action::{Action, Scope};
@@ -14,6 +15,10 @@ use novamind_tools::ParameterNumbers;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
+
+/// Width of the longest description of a figure that is a title. A longer description, such as the text of an action
+/// item, is a part of the explanation.
+pub(super) const MAX_FIGURE_TITLE: usize = 36;
 
 #[derive(Debug, Clone, Copy)]
 enum Link {
@@ -101,7 +106,9 @@ impl ExplainDialog {
                 selected: 0,
             },
         };
-        if !page.title.eq_ignore_ascii_case(&figure.title) {
+        if figure.title.width() > MAX_FIGURE_TITLE && !page.title.is_empty() {
+            page.parts.insert(0, ("selected".to_owned(), format!("{}.", figure.title)));
+        } else if !page.title.eq_ignore_ascii_case(&figure.title) {
             let note = [page.title.as_str(), page.note.as_str()];
             page.note = note.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" · ");
             page.title.clone_from(&figure.title);
@@ -347,6 +354,21 @@ mod tests {
         let rows = dialog_action(&mut dialog, Action::Rows, &company);
         assert!(rows.closes && matches!(rows.effects[..], [Effect::Execute(Action::Rows)]));
         assert!(dialog_action(&mut dialog, Action::Back, &company).closes);
+    }
+
+    #[test]
+    fn long_description_of_a_figure_is_a_part_of_the_explanation() {
+        let title =
+            "12 enterprises wait for an answer (356 seats, $43,818 a month at requested prices)".to_owned();
+        let long = Figure { title, ..figure("thread", None) };
+        let dialog = ExplainDialog::for_figure(&long, ParameterNumbers::bundled().into());
+        let shown = dialog_text(&dialog, &new_company(), 60, 13);
+        assert!(!shown.lines().next().expect("a title").contains('…'), "{shown}");
+        let words = shown.replace(['┃', '↓', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            words.contains("wait for an answer (356 seats, $43,818 a month at requested prices)."),
+            "{shown}"
+        );
     }
 
     #[test]

@@ -1,13 +1,15 @@
 //! The help dialog lists the keys of the focused pane, the keys of the screen, and global keys.
 
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::{Dialog, DialogContent, DialogResponse, DialogView};
 use crate::action::{ACTIONS, Action, Scope};
 use crate::context::{PaneKeys, ScreenContext, ScreenId};
 use crate::keys::KeyBindings;
-use novamind_tui::canvas::{Canvas, centered_rect};
+use novamind_tui::canvas::{Canvas, centered_rect, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
+use novamind_tui::widgets::column_layout::ColumnLayout;
 use novamind_tui::widgets::editor::EDITING_KEYS;
 use novamind_tui::widgets::{Table, TableCell, TableColumn};
 
@@ -22,6 +24,13 @@ struct HelpSection {
     scopes: Vec<Scope>,
     actions: Vec<Action>,
 }
+
+/// Heading of the descriptions of keys.
+const DESCRIPTION_HEADING: &str = "effect";
+/// Minimum width of the table with a column of descriptions.
+const MIN_DESCRIPTION_WIDTH: u16 = 90;
+/// Number of rows for the complete description of the selected key.
+const DETAIL_ROWS: u16 = 3;
 
 /// Actions that lists support but forms do not.
 const FILTER_ACTIONS: [Action; 2] = [Action::Filter, Action::Sort];
@@ -62,6 +71,20 @@ impl HelpDialog {
         }
     }
 
+    /// Returns the complete description of the selected key.
+    fn selected_description(&self) -> &str {
+        let row = self.table.selected().and_then(|at| self.table.rows().get(at));
+        row.and_then(|row| row.last()).map_or("", |cell| cell.text.as_str())
+    }
+
+    /// Returns the table without the column of descriptions, for a window in which most descriptions do not fit.
+    fn without_descriptions(&self) -> Table {
+        let mut table = self.table.clone();
+        let hidden = std::iter::once(DESCRIPTION_HEADING.to_owned()).collect();
+        table.set_layout(ColumnLayout { hidden, ..ColumnLayout::default() });
+        table
+    }
+
     #[cfg(test)]
     fn rows(&self) -> Vec<Vec<String>> {
         self.table.rows().iter().map(|row| row.iter().map(|cell| cell.text.clone()).collect()).collect()
@@ -73,8 +96,8 @@ fn key_table(parts: impl IntoIterator<Item = HelpSection>, keys: &KeyBindings) -
     let columns = vec![
         TableColumn::text("where").with_max_width(8),
         TableColumn::text("keys").with_max_width(16),
-        TableColumn::text("what").with_max_width(14),
-        TableColumn::text("").with_max_width(90),
+        TableColumn::text("what").with_max_width(22),
+        TableColumn::text(DESCRIPTION_HEADING).with_max_width(90),
     ];
     let mut table = Table::new(columns);
     let mut listed: Vec<Action> = Vec::new();
@@ -189,12 +212,18 @@ impl Dialog for HelpDialog {
             centered_rect(area, area.width.saturating_sub(4).min(110), area.height.saturating_sub(2));
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, &self.title, &self.table.summary(), true);
-        self.table.draw(
-            canvas,
-            Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside },
-            true,
-            0,
-        );
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let detail = wrap(self.selected_description(), usize::from(inside.width));
+        let rows = (DETAIL_ROWS.min(inside.height / 2)).max(detail.len() as u16).min(inside.height);
+        let [list, below] =
+            Layout::vertical([Constraint::Min(0), Constraint::Length(rows)]).areas::<2>(inside);
+        match inside.width < MIN_DESCRIPTION_WIDTH {
+            true => self.without_descriptions().draw(canvas, list, true, 0),
+            false => self.table.draw(canvas, list, true, 0),
+        }
+        for (row, line) in row_rects(below).zip(&detail) {
+            canvas.draw_text(row, line, Role::Dim);
+        }
         canvas.draw_pane_keys(dialog_area, &context.hints(&[Action::Filter, Action::Close]));
     }
 }
@@ -202,6 +231,7 @@ impl Dialog for HelpDialog {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_kit::{dialog_action, dialog_text, new_company};
 
     fn pane(title: &str, scopes: &[Scope], hints: &[Action]) -> PaneKeys {
         PaneKeys { title: title.to_owned(), scopes: scopes.to_vec(), hints: hints.to_vec() }
@@ -238,6 +268,20 @@ mod tests {
         let query = pane("Results", &[Scope::Result, Scope::List], &[]);
         let rows = HelpDialog::new(ScreenId::Sql, &[query], false, &keys).rows();
         assert!(rows.iter().all(|row| row[2] != "open"), "enter shows the full value here");
+    }
+
+    #[test]
+    fn every_description_can_be_read_in_the_smallest_window() {
+        let list = pane("Decisions", &[Scope::List], &[Action::Open]);
+        let mut help = HelpDialog::new(ScreenId::Journal, &[list], false, &KeyBindings::bundled());
+        let company = new_company();
+        for row in help.rows() {
+            let shown = dialog_text(&help, &company, 60, 13);
+            let words =
+                shown.replace(['┃', '↓', '↑', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
+            assert!(words.contains(&row[3]) && !words.contains('…'), "{}:\n{shown}", row[3]);
+            dialog_action(&mut help, Action::Down, &company);
+        }
     }
 
     #[test]

@@ -115,7 +115,7 @@ impl CommandPalette {
     pub fn for_participant(mut self, has_tour: bool) -> CommandPalette {
         let kept = |action: Action| match action {
             Action::LeaveRun | Action::WriteReport => false,
-            Action::Tour | Action::TourSkip | Action::TourBack | Action::TourClose => has_tour,
+            Action::Tour | Action::TourContinue | Action::TourBack | Action::TourClose => has_tour,
             _ => true,
         };
         self.entries.retain(|entry| !matches!(entry.effect, Effect::Execute(action) if !kept(action)));
@@ -147,13 +147,17 @@ impl CommandPalette {
             effect: Effect::RunOwnCommand(at),
         };
         self.entries.extend(own.commands.iter().enumerate().map(entry));
-        self.entries.extend(own.problems.iter().map(|problem| PaletteEntry {
-            kind: "error",
-            code: "",
-            title: COMMANDS_FILE.to_owned(),
-            doc: problem.clone(),
-            keys: String::new(),
-            effect: Effect::ShowText(COMMANDS_FILE.to_owned(), problem.clone()),
+        self.entries.extend(own.problems.iter().map(|problem| {
+            // A problem begins with its file and line.
+            let (title, doc) = problem.split_once(": ").unwrap_or((COMMANDS_FILE, problem));
+            PaletteEntry {
+                kind: "error",
+                code: "",
+                title: title.to_owned(),
+                doc: doc.to_owned(),
+                keys: String::new(),
+                effect: Effect::ShowText(COMMANDS_FILE.to_owned(), problem.clone()),
+            }
         }));
         self.update_matches();
         self

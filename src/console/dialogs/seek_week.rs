@@ -71,7 +71,7 @@ impl Dialog for SeekWeekDialog {
     }
 
     fn paste(&mut self, text: &str, _: &ScreenContext<'_>) -> DialogResponse {
-        self.field.insert(text.trim());
+        self.problem = self.field.paste_number(text).err();
         DialogResponse::stay()
     }
 

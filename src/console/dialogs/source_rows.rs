@@ -2,7 +2,9 @@
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
 
+use super::explanation::MAX_FIGURE_TITLE;
 use super::{Dialog, DialogResponse};
 use crate::action::{Action, Scope};
 use crate::context::ScreenContext;
@@ -120,8 +122,17 @@ impl Dialog for SourceRowsDialog {
         let dialog_area =
             centered_rect(area, area.width.saturating_sub(4).min(140), area.height.saturating_sub(2));
         canvas.clear(dialog_area, Role::Text);
-        let inside = canvas.draw_pane_frame(dialog_area, &self.title, &self.border_note(), true);
+        // The text of an action item is too long for the border.
+        let is_long = self.title.width() > MAX_FIGURE_TITLE;
+        let title = if is_long { "Source rows" } else { &self.title };
+        let inside = canvas.draw_pane_frame(dialog_area, title, &self.border_note(), true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let heading = wrap(if is_long { &self.title } else { "" }, inside.width.into());
+        let heading_rows = (heading.len() as u16).min(inside.height / 3);
+        for (row, line) in row_rects(Rect { height: heading_rows, ..inside }).zip(&heading) {
+            canvas.draw_text(row, line, Role::Text);
+        }
+        let inside = Rect { y: inside.y + heading_rows, height: inside.height - heading_rows, ..inside };
         let query = wrap(&self.sql, inside.width as usize);
         let used = query.len().min(MAX_QUERY_LINES).min(inside.height as usize / 3);
         for (row, line) in row_rects(inside).zip(query.iter().take(used)) {

@@ -229,6 +229,17 @@ impl OwnCommands {
         }
     }
 
+    /// Returns the first problem of the file, and the number of the other problems.
+    pub fn problem_summary(&self) -> Option<String> {
+        let [first, others @ ..] = self.problems.as_slice() else { return None };
+        let rest = match (others.len(), self.commands.is_empty()) {
+            (0, true) => "",
+            (0, false) => " The other own commands work.",
+            _ => " The palette shows the other problems.",
+        };
+        Some(format!("{first}{rest}"))
+    }
+
     /// Returns the meaning of pressed keys.
     pub fn meaning(&self, pressed: &[Chord]) -> Option<OwnKeyMeaning> {
         let at = self.commands.iter().position(|command| command.keys.starts_with(pressed))?;
@@ -411,6 +422,8 @@ lines = ["set_prices A=16 B=34", "set_capacity_tier 1"]
         );
         let own = parse(&format!("{VALID}\n[[commands]]\nname = \"b\"\nkey = \"ctrl-g\"\nsql = \"x\"\n"));
         assert!(own.problems[0].contains("already means Count rows"), "{:?}", own.problems);
+        let summary = own.problem_summary().expect("a problem");
+        assert!(summary.starts_with(&own.problems[0]) && summary.ends_with("work."), "{summary}");
     }
 
     #[test]

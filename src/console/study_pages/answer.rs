@@ -198,12 +198,13 @@ impl AnswerDraft {
         None
     }
 
-    /// Handles text that is pasted into the answer.
-    pub fn paste(&mut self, text: &str) {
+    /// Handles text that is pasted into the answer. Returns a problem with the text.
+    pub fn paste(&mut self, text: &str) -> Option<String> {
         match &mut self.input {
-            AnswerInput::Number(field) => field.insert(text.trim()),
+            AnswerInput::Number(field) => return field.paste_number(text).err(),
             AnswerInput::Text(editor) => editor.insert(text),
             _ => {}
         }
+        None
     }
 }

@@ -199,9 +199,10 @@ impl StudyPage {
             (StudyPageKind::Withdraw(None), Action::Confirm) => {
                 self.show_page(StudyPageKind::Withdraw(Some(TextField::default())))
             }
-            (StudyPageKind::Withdraw(None), Action::Cancel) => self.send_request(StudyRequest::ShowNextStep),
-            (StudyPageKind::Withdraw(Some(_)), Action::Discard) => {
-                self.send_request(StudyRequest::ShowNextStep)
+            (StudyPageKind::Withdraw(None), Action::Cancel)
+            | (StudyPageKind::Withdraw(Some(_)), Action::Discard) => {
+                let kept = Effect::ShowStatus("you did not withdraw; nothing was erased".to_owned());
+                self.send_request(StudyRequest::ShowNextStep).into_iter().chain([kept]).collect()
             }
             (StudyPageKind::Code(_), Action::Discard) => {
                 self.show_page(StudyPageKind::Label(TextField::default()))

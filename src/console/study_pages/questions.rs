@@ -180,7 +180,7 @@ impl Dialog for QuestionPage {
     }
 
     fn paste(&mut self, text: &str, _: &ScreenContext<'_>) -> DialogResponse {
-        self.drafts[self.current].paste(text);
+        self.problem = self.drafts[self.current].paste(text);
         DialogResponse::stay()
     }
 

@@ -44,6 +44,8 @@ struct ShownStep {
     position: (usize, usize),
     text: String,
     route: Vec<KeyGroup>,
+    /// Whether the user can continue with the next step.
+    is_done: bool,
 }
 
 impl Tour {
@@ -74,11 +76,19 @@ impl Tour {
                 insert_keys(&company.numbers.substitute(&insert_figures(&step.text, company)), keys)
             }),
             route: Router { facts, keys }.route(step),
+            is_done: self.is_step_done(company),
         };
         true
     }
 
-    /// Continues with the next step, whether or not the goal of the current step is reached.
+    /// Returns whether the user has done what the current step asks for. A step that the user went back to is done if
+    /// its goal is reached.
+    pub fn is_step_done(&self, company: &DisplayedCompany) -> bool {
+        let step = self.step.and_then(|at| steps().get(at));
+        self.is_seen || step.is_some_and(|step| step.is_reached(company))
+    }
+
+    /// Continues with the next step, whether or not the current step is done.
     pub fn continue_to_next_step(&mut self) {
         self.step = Some(self.step.map_or(0, |step| step + 1));
         (self.is_seen, self.revisited) = (false, None);
@@ -127,11 +137,12 @@ impl Tour {
         let place = Rect { x: area.x + 2, width: area.width.saturating_sub(2), ..area };
         canvas.draw_text(Rect { height: 1, ..place }, &title, Role::Title);
         let mut right = area.right().saturating_sub(2);
-        for action in [Action::TourClose, Action::TourSkip, Action::TourBack] {
+        for action in [Action::TourClose, Action::TourContinue, Action::TourBack] {
             let Some(key) = keys.label(action) else { continue };
-            let name =
-                if action == Action::TourSkip && self.is_seen { "continue" } else { action.entry().title };
-            let words = format!(" {key} {name} ");
+            if action == Action::TourContinue && !self.shown.is_done {
+                continue;
+            }
+            let words = format!(" {key} {} ", action.entry().title);
             let width = words.width() as u16;
             if right < place.x + title.width() as u16 + width {
                 break;

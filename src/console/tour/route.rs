@@ -159,7 +159,7 @@ impl Router<'_> {
             return self.unless_covered(self.week_route());
         }
         if step.is_reached(company) {
-            return vec![self.group(&[Action::TourSkip], "continue")];
+            return vec![self.group(&[Action::TourContinue], "continue")];
         }
         match &step.goal {
             Goal::Set { set, value, cell, .. } => {
@@ -277,7 +277,7 @@ impl Router<'_> {
     }
 
     fn sight_route(&self, sight: Sight) -> Vec<KeyGroup> {
-        let next = self.group(&[Action::TourSkip], "continue");
+        let next = self.group(&[Action::TourContinue], "continue");
         if sight.is_shown(self.facts) {
             return vec![next];
         }

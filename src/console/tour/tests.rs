@@ -152,7 +152,7 @@ fn returning_user_resumes_after_the_last_reached_goal() {
         assert!(tour.update(&facts(&company), &keys));
         tour.continue_to_next_step();
     }
-    assert!(!tour.update(&facts(&company), &keys), "every step can be skipped");
+    assert!(!tour.update(&facts(&company), &keys), "no step is left");
 }
 
 #[test]
@@ -287,6 +287,7 @@ fn user_can_go_back_to_a_reached_step() {
         assert!(tour.update(&facts(&company), &keys));
         assert_eq!(tour.title(), title);
         assert_eq!(tour.key_groups()[0].effect, "continue");
+        assert!(tour.is_step_done(&company));
     }
     tour.continue_to_next_step();
     tour.update(&facts(&company), &keys);
@@ -295,6 +296,9 @@ fn user_can_go_back_to_a_reached_step() {
     let new = new_company();
     tour.update(&facts(&new), &keys);
     assert!(!tour.go_back(&new), "the first step");
+    let mut tour = Tour { step: Some(3), ..Tour::default() };
+    tour.update(&facts(&new), &keys);
+    assert!(!tour.is_step_done(&new), "no price is set");
 }
 
 #[test]

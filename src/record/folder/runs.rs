@@ -301,6 +301,9 @@ fn find_matching_run(
         if list.is_empty() {
             return Err(RunError::NoRuns { folder: runs.to_owned() });
         }
+        if list.iter().all(|(_, run)| run.ended.is_some() && !wanted(run)) {
+            return Err(RunError::AllRunsEnded { folder: runs.to_owned() });
+        }
         let newest = list.into_iter().find(|(_, run)| run.problem.is_none() && wanted(run));
         return newest.map(|(folder, _)| folder).ok_or_else(missing);
     }

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::Session;
+use novamind_record::error::RunError;
 use novamind_record::files::write_atomically;
 use novamind_tools::ToolId;
 
@@ -76,16 +77,18 @@ impl DraftTexts {
 pub struct DraftFile(Option<PathBuf>);
 
 impl DraftFile {
-    /// Saves the drafts, or removes the file if there are no drafts. Ignores disk errors, because the texts are still
-    /// on the screen.
-    pub fn save(&self, drafts: &DraftTexts) {
-        let Some(file) = &self.0 else { return };
+    /// Saves the drafts, or removes the file if there are no drafts.
+    ///
+    /// # Errors
+    /// The file cannot be written. The texts are still on the screen.
+    pub fn save(&self, drafts: &DraftTexts) -> Result<(), RunError> {
+        let Some(file) = &self.0 else { return Ok(()) };
         if drafts.is_empty() {
             let _ = std::fs::remove_file(file);
-            return;
+            return Ok(());
         }
-        let Ok(text) = serde_json::to_vec(drafts) else { return };
-        let _ = write_atomically(file, &text);
+        let Ok(text) = serde_json::to_vec(drafts) else { return Ok(()) };
+        write_atomically(file, &text)
     }
 
     /// Loads the drafts. Returns empty drafts if the file cannot be read.
@@ -118,14 +121,16 @@ mod tests {
         let mut drafts = DraftTexts { rationale: "wait\nand see".to_owned(), ..DraftTexts::default() };
         drafts.forecasts[1][2] = "1,2".to_owned();
         drafts.forms.entry(ToolId::SetPrices).or_default().insert("A".to_owned(), "12.".to_owned());
-        session.draft_file().save(&drafts);
+        session.draft_file().save(&drafts).expect("saved");
         assert_eq!(session.draft_file().load(), drafts);
         let places: Vec<String> = drafts.texts_by_field().into_iter().map(|(place, _)| place).collect();
         assert_eq!(places, ["rationale", "forecasts", "form set_prices"]);
         let file = session.folder().expect("a folder").join(DRAFTS_FILE);
         std::fs::write(&file, b"{\"rationale\":").expect("written");
         assert!(session.draft_file().load().is_empty(), "a truncated file is ignored");
-        session.draft_file().save(&DraftTexts::default());
+        session.draft_file().save(&DraftTexts::default()).expect("removed");
         assert!(!file.exists());
+        std::fs::create_dir(&file).expect("a folder");
+        assert!(session.draft_file().save(&drafts).is_err(), "a folder cannot be replaced by a file");
     }
 }

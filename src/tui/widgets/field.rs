@@ -20,6 +20,8 @@ pub struct TextField {
 
 /// Maximum length of the text in bytes, which limits accidental pastes.
 const MAX_BYTES: usize = 4096;
+/// Maximum length of a pasted number in characters.
+const MAX_NUMBER_LENGTH: usize = 32;
 
 impl TextField {
     /// Returns a field with a text and the cursor at its end.
@@ -100,20 +102,37 @@ impl TextField {
         }
     }
 
-    /// Inserts text at the cursor. Line breaks are replaced by spaces.
+    /// Inserts text at the cursor. Line breaks are replaced by spaces. The end of a text that is too long is left out.
     pub fn insert(&mut self, text: &str) {
         if std::mem::take(&mut self.selected) {
             *self = TextField::default();
         }
         let clean: String =
             text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
-        if self.text.len() + clean.len() > MAX_BYTES {
-            return;
-        }
+        let clean = &clean[..clean.floor_char_boundary(MAX_BYTES.saturating_sub(self.text.len()))];
         let at = self.byte_offset(self.cursor);
-        self.text.insert_str(at, &clean);
+        self.text.insert_str(at, clean);
         // A combining mark extends the previous grapheme, so the cursor is computed from the byte position.
         self.cursor = self.text[..at + clean.len()].graphemes(true).count();
+    }
+
+    /// Inserts a pasted number at the cursor.
+    ///
+    /// # Errors
+    /// The text has characters that numbers cannot contain, or is too long. These characters are left out.
+    pub fn paste_number(&mut self, text: &str) -> Result<(), String> {
+        let text = text.trim();
+        let kept_length = if self.selected { 0 } else { self.text.chars().count() };
+        let room = MAX_NUMBER_LENGTH.saturating_sub(kept_length);
+        let accepted: String = text.chars().filter(|letter| is_number_char(*letter)).take(room).collect();
+        self.insert(&accepted);
+        match text.chars().count() - accepted.chars().count() {
+            0 => Ok(()),
+            count => Err(format!(
+                "{} not accepted: a number has digits and a point, and at most {MAX_NUMBER_LENGTH} characters",
+                if count == 1 { "1 character was".to_owned() } else { format!("{count} characters were") }
+            )),
+        }
     }
 
     fn byte_offset(&self, grapheme: usize) -> usize {
@@ -181,6 +200,23 @@ mod tests {
             field.handle_key(&KeyEvent::new(*key, KeyModifiers::NONE));
         }
         field
+    }
+
+    #[test]
+    fn pasted_number_reports_what_was_left_out() {
+        let mut field = TextField::with_selected_text("12");
+        assert_eq!(field.paste_number(" 1,200.5 "), Ok(()));
+        assert_eq!(field.text(), "1,200.5");
+        let problem = field.paste_number("6 units").expect_err("letters");
+        assert!(problem.starts_with("6 characters were not accepted: "), "{problem}");
+        assert_eq!(field.text(), "1,200.56");
+        let mut field = TextField::default();
+        let problem = field.paste_number(&"7".repeat(5000)).expect_err("too long");
+        assert!(problem.starts_with("4968 characters were not accepted"), "{problem}");
+        assert_eq!(field.text(), "7".repeat(32));
+        let mut field = TextField::default();
+        field.insert(&"日".repeat(5000));
+        assert_eq!(field.text().chars().count(), MAX_BYTES / 3, "the start of a long text is kept");
     }
 
     #[test]

@@ -82,7 +82,7 @@ fn full_disk_prevents_adoption_and_keeps_the_run() {
         home.command("sh").args(["-c", &script]),
         "whatif adopt from 2: set_prices * 0.9\nstatus\n",
     );
-    assert_eq!(code, 0, "{err}{out}");
+    assert_eq!(code, 1, "{err}{out}");
     let answers: Vec<Value> = out.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     let adopted = answers.iter().find(|answer| answer["command"] == "branch").expect("an answer");
     assert_eq!(

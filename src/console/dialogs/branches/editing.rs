@@ -424,7 +424,8 @@ impl DecisionList {
 
     pub(super) fn paste(&mut self, text: &str) {
         match &mut self.input {
-            Some(Input::Factor { field, .. } | Input::Parameter { field, .. }) => field.insert(text.trim()),
+            Some(Input::Factor { field, .. }) => self.notice = field.paste_number(text).err(),
+            Some(Input::Parameter { field, .. }) => field.insert(text.trim()),
             Some(Input::Form { form, .. }) => self.notice = form.paste(text),
             Some(Input::Picker(_)) | None => {}
         }

@@ -392,7 +392,7 @@ impl Dialog for NextWeekDialog {
     fn paste(&mut self, text: &str, _: &ScreenContext<'_>) -> DialogResponse {
         match self.step {
             NextWeekStep::Rationale => self.rationale.insert(text),
-            NextWeekStep::Forecasts if self.is_typing => self.cell().insert(text),
+            NextWeekStep::Forecasts if self.is_typing => self.problem = self.cell().paste_number(text).err(),
             _ => {}
         }
         DialogResponse::stay()

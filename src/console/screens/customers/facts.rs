@@ -14,6 +14,7 @@ use novamind_base::formatting::{dollars_and_cents, compact_number, dollars, grou
 use novamind_session::identifiers::{Group, Plan};
 use novamind_session::Source;
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
+use novamind_tui::text::first_fitting;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::sparkline::bar;
 use novamind_worker::company::DisplayedCompany;
@@ -64,11 +65,17 @@ impl Pane<Customers> for FactsPane {
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, customers: &Customers, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         customers.group(context.company).map_or_else(PaneBorder::default, |group| {
             let segment = if group.is_enterprise() { "enterprise" } else { "individual" };
-            let note = group_name(context.company, group).to_owned();
-            PaneBorder { title: format!("{group} · {segment}"), note, ..PaneBorder::default() }
+            let name = group_name(context.company, group);
+            let wordings = [
+                format!("{group} · {name} · {segment}"),
+                format!("{group} · {name}"),
+                format!("{group} · {segment}"),
+            ];
+            let title = first_fitting(wordings, usize::from(area.width.saturating_sub(6)));
+            PaneBorder { title, ..PaneBorder::default() }
         })
     }
 

@@ -39,6 +39,8 @@ impl Default for OpenGroupState {
 }
 
 const FIT_ROWS: u16 = 24;
+/// Minimum height for two panes below each other.
+const MIN_SPLIT_HEIGHT: u16 = 11;
 
 pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     use CustomersPane::{Cohorts, Facts, Fit, Quality, Study, Actions, Weeks};
@@ -66,6 +68,9 @@ pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rec
         draw_stack(customers, &[Quality, Cohorts, Study], canvas, below, context);
         draw_pane(customers, Facts, canvas, facts, context);
         draw_pane(customers, Actions, canvas, go, context);
+    } else if area.width < 70 && area.height < MIN_SPLIT_HEIGHT {
+        // The window is too small for two panes below each other.
+        draw_stack(customers, &[Fit, Quality, Weeks, Cohorts, Study, Actions, Facts], canvas, area, context);
     } else if area.width < 70 {
         // The window is too narrow for two texts next to each other.
         let [above, below] = split(area, area.height.saturating_sub(6));

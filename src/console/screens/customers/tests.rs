@@ -70,7 +70,7 @@ fn open_group_links_to_its_tools() {
     handle_action(&mut screen, Action::Open, &company);
     assert_eq!((screen.open_group, Screen::pane_count(&screen)), (Some(1), GROUP_PANES.len()));
     let text = screen_text(&screen, &company, 80, 21);
-    assert!(text.contains("S2 · individual") && text.contains("set_targeted_dev_spend"), "{text}");
+    assert!(text.contains("S2 · Quality-Focused Individuals") && text.contains("set_targeted_dev_spend"), "{text}");
     handle_action(&mut screen, Action::Down, &company);
     let effects = handle_action(&mut screen, Action::Open, &company);
     assert!(

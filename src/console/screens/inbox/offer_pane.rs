@@ -83,7 +83,10 @@ impl Pane<Inbox> for OfferPane {
     fn paste(&self, inbox: &mut Inbox, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
         match inbox.rules_form {
             Some(_) => inbox.edit_rules(context.company, &mut |field| field.insert(text)),
-            None => self.edit_filter(inbox, &mut |field| field.insert(text)),
+            None => {
+                let pasted = inbox.value_field.as_mut().map(|field| field.paste_number(text));
+                return pasted.and_then(Result::err).map(Effect::ShowError).into_iter().collect();
+            }
         }
         Vec::new()
     }

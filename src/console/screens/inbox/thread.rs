@@ -10,7 +10,7 @@ use crate::effect::Effect;
 use crate::screens::panes::{Pane, PaneBorder, PanePlacement, draw_framed};
 use novamind_rules::{Turn, format_offer_lines};
 use novamind_tui::canvas::{Canvas, row_rects};
-use novamind_tui::text::{format_count, wrap};
+use novamind_tui::text::{first_fitting, format_count, wrap};
 use novamind_tui::theme::Role;
 
 pub struct ThreadPane;
@@ -101,7 +101,10 @@ impl Pane<Inbox> for MessagesPane {
             ..72 => state,
             _ => format!("{} · {state}", format_count(thread.seats, "seat")),
         };
-        let title = format!("{} {} · {}", thread.customer_label(), thread.group, thread.kind_label());
+        let complete = format!("{} {} · {}", thread.customer_label(), thread.group, thread.kind_label());
+        let number = format!("#{} · {}", thread.customer, thread.kind_label());
+        // The list shows the name of the customer too.
+        let title = first_fitting([complete, number], usize::from(area.width.saturating_sub(6)));
         PaneBorder { title, note, ..PaneBorder::default() }
     }
 

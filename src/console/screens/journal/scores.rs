@@ -131,13 +131,13 @@ impl Pane<Journal> for ScoresPane {
     }
 }
 
-/// Describes the measured coverage of all horizons and the intended one: `coverage 90% (aim: 95%)`.
+/// Describes the measured coverage of all horizons and the intended one: `coverage 90% · aim 95%`.
 fn coverage_text(scores: &[ForecastScore]) -> String {
     let (covered, scored) =
         scores.iter().fold((0, 0), |(covered, scored), score| (covered + score.covered, scored + score.scored));
     match scored {
         0 => "aim: 95% coverage".to_owned(),
-        scored => format!("coverage {} (aim: 95%)", percent(f64::from(covered) / f64::from(scored), 0)),
+        scored => format!("coverage {} · aim 95%", percent(f64::from(covered) / f64::from(scored), 0)),
     }
 }
 
@@ -197,7 +197,7 @@ mod tests {
         let covered: u32 = scores.iter().map(|score| score.covered).sum();
         let scored: u32 = scores.iter().map(|score| score.scored).sum();
         let share = percent(f64::from(covered) / f64::from(scored), 0);
-        assert_eq!(coverage_text(scores), format!("coverage {share} (aim: 95%)"));
+        assert_eq!(coverage_text(scores), format!("coverage {share} · aim 95%"));
         assert_eq!(coverage_text(&[]), "aim: 95% coverage");
         assert!(company.forecast_scores[0].scored >= 8);
         assert_eq!(figure(&company, 9), None);

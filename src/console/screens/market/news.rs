@@ -10,6 +10,7 @@ use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_tui::canvas::Canvas;
+use novamind_tui::text::format_count;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{TableCell, TableColumn, Table};
 use novamind_worker::company::DisplayedCompany;
@@ -78,7 +79,7 @@ impl Pane<Market> for CompetitorNewsPane {
 
     fn border(&self, market: &Market, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let note = match market.headlines.summary() {
-            note if note.is_empty() => format!("{} in the press", market.news.len()),
+            note if note.is_empty() => format_count(market.news.len() as f64, "item"),
             note => note,
         };
         let keys = match market.news.is_empty() {

@@ -52,7 +52,7 @@ impl ProductPanel for PlansPane {
     }
 
     fn note(&self, _: &Product, _: &DisplayedCompany, _: usize) -> String {
-        "for seats with usage on the last day, 30 days a month".to_owned()
+        "for seats with usage on the last day · 30 days a month".to_owned()
     }
 
     fn destination(&self, product: &Product) -> &'static str {

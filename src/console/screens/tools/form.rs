@@ -41,6 +41,8 @@ pub struct ToolForm {
     pub new_customer: Option<(usize, TextField)>,
     /// Drafts that the last reset discarded, by path. A second reset restores these drafts.
     discarded_drafts: BTreeMap<String, String>,
+    /// Values that another screen filled into a form without drafts, by path.
+    suggested_values: Option<BTreeMap<String, String>>,
     /// The check of the call, if it has arrived.
     pub preview: Option<Result<Preview, Rejection>>,
     checking: Pending<PreviewCallQuestion>,
@@ -87,6 +89,7 @@ impl ToolForm {
             committed_cell: None,
             new_customer: None,
             discarded_drafts: BTreeMap::new(),
+            suggested_values: None,
             preview: None,
             checking: Pending::default(),
             sent_arguments: None,
@@ -183,7 +186,28 @@ impl ToolForm {
         (self.draft_before_edit, self.code_editor, self.committed_cell, self.new_customer, self.preview) = (None, None, None, None, None);
         self.checking.cancel();
         self.discarded_drafts.clear();
+        self.suggested_values = None;
         self.clamp_focus();
+    }
+
+    /// Fills in values that the user chose on another screen.
+    pub fn fill_suggestion(&mut self, arguments: &Value) -> Vec<Effect> {
+        let is_unchanged = !self.sheet.is_changed();
+        self.sheet.fill(arguments);
+        self.suggested_values = is_unchanged.then(|| self.sheet.drafts());
+        self.check()
+    }
+
+    /// Discards values that another screen filled in and that the user did not change. A reset restores these values.
+    pub fn discard_suggestion(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
+        let drafts = self.sheet.drafts();
+        if self.suggested_values.as_ref() != Some(&drafts) || !self.sheet.is_changed() {
+            return Vec::new();
+        }
+        self.reset(company);
+        self.discarded_drafts = drafts;
+        let text = format!("{} is unchanged: the values that were filled in are discarded", self.spec.name());
+        vec![Effect::ShowStatus(text)]
     }
 
     /// Discards the drafts of the form. If no drafts exist, restores the drafts that were discarded last.
@@ -542,12 +566,19 @@ impl ToolForm {
             editor.insert(text);
             return self.store_code();
         }
+        let is_text = self.is_at_text();
+        let mut pasted = Ok(());
         if let Some((_, field)) = &mut self.new_customer {
             field.insert(text.trim());
         } else if let Some(field) = self.sheet.cell_mut(self.focus).and_then(|slot| slot.draft.as_mut()) {
-            field.insert(text.trim());
+            match is_text {
+                true => field.insert(text.trim()),
+                false => pasted = field.paste_number(text),
+            }
         }
-        self.check()
+        let mut effects = self.check();
+        effects.extend(pasted.err().map(Effect::ShowError));
+        effects
     }
 }
 

@@ -56,8 +56,9 @@ impl Pane<Tools> for FormPane {
         }
         match action {
             Action::Close => {
+                let effects = tools.discard_suggestion(context.company);
                 tools.focus = ToolsPane::List;
-                return Vec::new();
+                return effects;
             }
             Action::EditCell if tools.dedicated_screen_effect().is_some() => {
                 tools.focus = ToolsPane::List;

@@ -126,7 +126,9 @@ fn cell_area(block: &ArgumentBlock, row: Rect, place: usize) -> Rect {
 fn draw_head(form: &ToolForm, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
     let block = &form.sheet.blocks[at];
     if block.is_scalar() {
-        canvas.draw_text(row, &format!("{:<19}{:>11} {:>11}", "", "now", "new"), Role::Header);
+        for (place, heading) in ["now", "new"].into_iter().enumerate() {
+            canvas.draw_aligned(cell_area(block, row, place), heading, Role::Header, Align::Right);
+        }
         return;
     }
     if block.is_text() {

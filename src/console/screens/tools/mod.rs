@@ -134,10 +134,15 @@ impl Tools {
     /// Shows the form of a tool with arguments filled in.
     pub fn prefill(&mut self, tool: ToolId, arguments: &Value, company: &DisplayedCompany) -> Vec<Effect> {
         self.show_tool(tool, company);
-        self.form(company).map_or(Vec::new(), |form| {
-            form.sheet.fill(arguments);
-            form.check()
-        })
+        self.form(company).map_or(Vec::new(), |form| form.fill_suggestion(arguments))
+    }
+
+    /// Discards the values that another screen filled into the focused form, if the user did not change them.
+    pub fn discard_suggestion(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
+        match self.focus {
+            ToolsPane::Form => self.form(company).map_or(Vec::new(), |form| form.discard_suggestion(company)),
+            ToolsPane::List => Vec::new(),
+        }
     }
 
     /// Returns the state of the form that has the focus, for the tour.

@@ -382,6 +382,25 @@ fn project_columns_are_separated() {
 }
 
 #[test]
+fn filled_in_value_is_a_draft_only_if_the_user_changes_it() {
+    let (_, company, mut screen) = played_screen::<Tools>(1);
+    let tool = ToolId::SetCapacityTier;
+    screen.prefill(tool, &json!({"tier": 5}), &company);
+    screen.set_focused_pane(ToolsPane::Form);
+    assert_eq!(screen.tools_with_drafts(), [tool]);
+    let left = handle_action(&mut screen, Action::Close, &company);
+    assert!(matches!(&left[..], [Effect::ShowStatus(text)] if text.contains("discarded")), "{left:?}");
+    assert!(screen.tools_with_drafts().is_empty());
+    screen.prefill(tool, &json!({"tier": 5}), &company);
+    screen.set_focused_pane(ToolsPane::Form);
+    handle_action(&mut screen, Action::EditCell, &company);
+    screen.form(&company).expect("a form").paste("6");
+    handle_action(&mut screen, Action::Commit, &company);
+    assert!(handle_action(&mut screen, Action::Close, &company).is_empty());
+    assert_eq!(screen.tools_with_drafts(), [tool], "the user changed the value");
+}
+
+#[test]
 fn small_window_shows_all_values_and_plan_margins() {
     let (_, company, mut screen) = played_screen::<Tools>(6);
     let sold: Vec<&str> = Plan::ALL

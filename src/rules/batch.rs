@@ -10,7 +10,7 @@ use novamind_session::identifiers::Plan;
 use novamind_session::{EnterpriseNames, Session};
 use novamind_tools::{Rejection, ToolId};
 
-/// The reply of a rule to a thread.
+/// The reply that a rule sends to a thread.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RuleReply {
     /// An offer of plans with their prices.
@@ -22,7 +22,7 @@ pub enum RuleReply {
 /// A thread with the matching rule and its reply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RuleOutcome {
-    /// Fields of the waiting thread.
+    /// Fields of the waiting thread that rules compare.
     pub thread: ThreadContext,
     /// Index of the matching rule; `None` if no rule matches.
     pub rule_index: Option<usize>,
@@ -41,10 +41,10 @@ pub struct RuleBatch {
     pub totals: Vec<OfferTotals>,
 }
 
-/// Returns the tool calls that send the replies of rules to all waiting enterprises.
+/// Applies the rules in `text` to all waiting threads and returns the tool calls that send the replies.
 ///
 /// # Errors
-/// Returns `rules_not_readable`, or the error of a failed database query.
+/// Returns `rules_not_readable` if the rules have a syntax error, or the error of a failed database query.
 pub fn calls_for_waiting_threads(
     text: &str,
     session: &mut Session,

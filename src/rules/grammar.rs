@@ -35,7 +35,7 @@ pub(super) enum Action {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OfferLine {
-    /// Offered plan. `None` stands for the plan that the enterprise asked for.
+    /// Offered plan; `None` if the line offers the plan that the enterprise asked for.
     pub(super) plan: Option<Plan>,
     pub(super) price: Price,
 }
@@ -82,7 +82,7 @@ pub fn parse(text: &str) -> Result<Vec<Rule>, RuleError> {
     }
 }
 
-/// Parses conditions without a rule, in the form that follows `where`.
+/// Parses conditions that are not part of a rule, in the form that follows `where` in a rule.
 pub(super) fn parse_conditions(text: &str) -> Result<Vec<Condition>, RuleError> {
     let tokens = tokenize(text)?;
     let mut reader = RuleParser { text, tokens: &tokens, at: 0 };
@@ -179,7 +179,7 @@ impl RuleParser<'_> {
         RuleError { text: text.into(), column: column(self.text, at) }
     }
 
-    /// Returns an error at the previous word.
+    /// Steps back by one token and returns an error there.
     fn error_at_previous(&mut self, text: impl Into<String>) -> RuleError {
         self.at -= 1;
         self.error_at_current_token(text)
@@ -272,7 +272,7 @@ impl RuleParser<'_> {
         Ok(Condition::Compared(field, comparison, value))
     }
 
-    /// Rejects `1,000`, because the comma would separate two numbers.
+    /// Rejects a number such as `1,000`, whose comma would be read as a separator.
     fn reject_comma_in_number(&mut self) -> Result<(), RuleError> {
         let [number, comma, more, ..] = &self.tokens[self.at.saturating_sub(1)..] else { return Ok(()) };
         let digits = |token: &Token| token.text.chars().all(|letter| letter.is_ascii_digit());

@@ -7,11 +7,11 @@ use novamind_base::formatting::{dollars, dollars_and_cents, grouped_number, perc
 use novamind_session::Session;
 use novamind_session::identifiers::{Group, Plan};
 
-/// Days per month for estimates.
+/// Number of days that estimates count as one month.
 const DAYS_PER_MONTH: f64 = 30.0;
 
-/// Mean days since signing from which measured usage is preferred to a market study. The usage rate of an enterprise is
-/// drawn at the deal and again at every bill, so newer seats show a single draw.
+/// Lowest mean number of days since signing at which measured usage is preferred to a market study. The usage rate of
+/// an enterprise is drawn at the deal and again at every bill, so newer seats show a single draw.
 const MIN_MEASURED_DAYS: f64 = 30.0;
 
 /// Prices, quotas and costs of the plans, and the usage per seat of each group.
@@ -150,9 +150,9 @@ pub struct OfferTotals {
     pub seats: u32,
     /// Largest possible revenue from the offers, in dollars per month.
     pub monthly_revenue: f64,
-    /// Revenue from enterprises with known compute cost, and this compute cost, in dollars per month.
+    /// Revenue from the enterprises whose compute cost is known, and that compute cost, in dollars per month.
     known_margin: (f64, f64),
-    /// Lowest and highest price as a share of the list price.
+    /// Lowest and highest offered price as a share of the list price; `None` before the first offer with a list price.
     list_shares: Option<(f64, f64)>,
     /// Number of offers that include a plan whose quota does not cover the enterprise's usage.
     pub above_quota: u32,

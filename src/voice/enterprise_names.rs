@@ -61,8 +61,8 @@ impl EnterpriseNames {
         }
     }
 
-    /// Returns the name of an enterprise with the customer number that tool calls and SQL use, for example `Northgate
-    /// Ashwick #16064`.
+    /// Returns the name of an enterprise, followed by the customer number that tool calls and SQL use, for example
+    /// `Northgate Ashwick #16064`.
     pub fn name_with_number(&self, customer: u32) -> String {
         format!("{} #{customer}", self.name(customer))
     }

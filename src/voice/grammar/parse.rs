@@ -1,4 +1,4 @@
-//! Parses a grammar and checks that it can always be expanded.
+//! Parses a grammar and checks that every rule can be expanded in every context.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -164,7 +164,7 @@ impl PartParser<'_> {
     }
 }
 
-/// Checks that every rule has an alternative without tags and optional values, and that no rule contains itself.
+/// Checks that every rule has an alternative without tags or optional values, and that no rule contains itself.
 fn check_always_expandable(
     rules: &BTreeMap<String, Vec<Alternative>>,
     names: &DeclaredNames,

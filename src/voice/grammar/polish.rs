@@ -1,4 +1,4 @@
-//! Fixes articles, spaces and capitals of expanded text.
+//! Corrects articles, spaces and capitals in expanded text.
 
 /// Inserts the correct articles, removes extra spaces, and capitalizes sentences.
 pub fn polish(text: &str) -> String {

@@ -72,7 +72,7 @@ pub enum LiveEvent {
 }
 
 impl LiveEvent {
-    /// Returns the name of the event in the reasons of a judgement.
+    /// Returns the name that the reasons of a judgement use for the event.
     pub fn id(self) -> &'static str {
         match self {
             LiveEvent::Outage => "outage",

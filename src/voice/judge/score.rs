@@ -225,8 +225,8 @@ impl GroupJudge<'_> {
         }
     }
 
-    /// Returns how far the post takes responsibility for current problems. The value is negative if the post apologizes
-    /// although there is no problem.
+    /// Returns to what extent the post takes responsibility for current problems. The value is negative if the post
+    /// apologizes although there is no problem.
     fn accountability(&self) -> f64 {
         let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];
@@ -299,7 +299,7 @@ fn term(name: &'static str, value: f64, because: Vec<String>) -> ScoreTerm {
     ScoreTerm { name: name.into(), value, because }
 }
 
-/// Creates a term whose positive value is reduced if the post is dishonest or offensive.
+/// Creates a term. If the post is dishonest or offensive (`spoilt`), a positive value is multiplied by `share`.
 fn reducible_term(
     name: &'static str,
     value: f64,

@@ -1,4 +1,4 @@
-//! Comments on the player's posts: one or two sentences in the style of a group, with the judge's reason.
+//! Comments on the player's posts: one or two sentences in the style of a group that give the judge's reason.
 
 use std::borrow::Cow;
 use std::sync::LazyLock;

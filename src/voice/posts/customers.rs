@@ -18,7 +18,7 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
 /// Number of days for which an author counts as a new customer.
 const NEW_CUSTOMER_DAYS: u32 = 30;
 const VETERAN_AFTER_DAYS: u32 = 120;
-/// Among casual authors, one in this number writes without capital letters.
+/// One in this many casual authors writes without capital letters.
 const LOWERCASE_AUTHOR_INTERVAL: u32 = 9;
 
 pub(super) fn draft_post(context: &Context, choose: Chooser<'_>) -> String {

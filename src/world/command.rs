@@ -43,9 +43,9 @@ pub enum Command {
 /// A post of the player that is to be published.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PostDraft {
-    /// Text of the post.
+    /// Text that the player wrote.
     pub content: String,
-    /// Number of the post to which the player replies.
+    /// Number of the post to which the player replies; `None` if the post is not a reply.
     pub reply_to: Option<u32>,
 }
 

@@ -56,7 +56,7 @@ pub struct Spillover {
     pub change: f64,
     /// Weight of the source group for the affected group.
     pub weight: f64,
-    /// Factor that all spillover is multiplied by.
+    /// Factor that applies to every spillover.
     pub factor: f64,
 }
 
@@ -148,7 +148,7 @@ pub struct SpilloverEffect {
     pub source_change: f64,
     /// Weight of the source group for the affected group.
     pub weight: f64,
-    /// Factor that all spillover is multiplied by.
+    /// Factor that applies to every spillover.
     pub factor: f64,
     /// Change in the affected group's reputation, which is applied if `counts` is true.
     pub change: f64,

@@ -25,7 +25,7 @@ pub struct World {
     pub finance: Finance,
     /// The product and its development.
     pub product: Product,
-    /// All customers.
+    /// All customers, and the columns of the active subscribers.
     pub customers: Customers,
     /// Counter that numbers support issues.
     pub issue_counter: IssueCounter,

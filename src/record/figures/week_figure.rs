@@ -36,7 +36,7 @@ macro_rules! define_figures {
             /// All figures: the figures of the Overview in screen order, then the figures of the ledger.
             pub const ALL: &'static [WeekFigure] = &[$(WeekFigure::$figure),*];
 
-            /// Returns the name of the figure on screens.
+            /// Returns the name that screens show for the figure.
             pub fn name(self) -> &'static str {
                 match self { $(WeekFigure::$figure => $name),* }
             }

@@ -36,7 +36,7 @@ const MAX_SMALL_SPLIT_BLOCKS: usize = 2;
 /// Minimum number of blocks per task with [`WorkSplit::Large`].
 const MIN_LARGE_SPLIT_BLOCKS: usize = 24;
 
-/// All customers of a run. Active customers are stored in columns; of other customers, only the numbers are stored.
+/// All customers of a run. Active customers are stored in columns. For other customers, only the numbers are stored.
 #[derive(Debug, Clone)]
 pub struct Customers {
     /// Customers of each group.
@@ -54,7 +54,8 @@ pub struct Customers {
 pub struct GroupCustomers {
     /// Number of customers generated since day 0.
     pub created: u32,
-    /// Blocks of active customers. Block k contains the sequence numbers k * BLOCK + 1 ..= (k + 1) * BLOCK.
+    /// Blocks of active customers. Block k contains the sequence numbers k * n + 1 ..= (k + 1) * n, where n is
+    /// [`CUSTOMERS_PER_BLOCK`].
     pub blocks: Vec<Block>,
 }
 

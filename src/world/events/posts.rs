@@ -324,7 +324,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Returns the identifier of the severity in posts and tables.
+    /// Returns the identifier that posts and tables use for the severity.
     pub fn id(self) -> &'static str {
         ["minor", "moderate", "major", "transformative"][self as usize]
     }

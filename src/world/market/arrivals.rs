@@ -171,7 +171,7 @@ pub struct LeadEvaluation {
     pub offers: ByPlan<PlanOffer>,
     /// Discount for the lead's group and channel, dollars per month.
     pub discount: f64,
-    /// Demand of the lead that is compared with quotas.
+    /// Demand of the lead, in units per day, which is compared with quotas.
     pub demand: f64,
     /// The lead's curve including today's expectations.
     pub curve: Curve,

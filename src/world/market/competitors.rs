@@ -11,7 +11,7 @@ use crate::product::Product;
 use crate::random::{Part, Stream, Streams};
 use crate::series::RecordedEvent;
 
-/// A competitor event.
+/// A competitor's gain in quality, which raised the expectations of customers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CompetitorEvent {
     /// Day of the event.
@@ -180,7 +180,8 @@ pub fn apply_move(
     events.push(event);
 }
 
-/// Draws today's event, if any: its gain in quality before the growth over the run, and the share of the quality bank.
+/// Draws today's event, if any: its gain in quality before the growth over the run, and the share of the quality bank
+/// that competitors can copy.
 pub fn draw_event(chance: f64, competitor: &Competitor, stream: &mut Stream) -> Option<RecordedEvent> {
     if chance <= 0.0 || !stream.bernoulli(chance) {
         return None;

@@ -63,8 +63,8 @@ parameters! {
         pub reputation_clamp_max: f64 where 0.0..=1.0,
         /// Minimum reputation after a change.
         pub reputation_floor: f64 where 0.0..=1.0,
-        /// Factor of all spillover. A reputation change of a group is multiplied by this factor and by the weight of
-        /// that group for the affected group.
+        /// Factor that applies to every spillover. The spillover to a group is the reputation change of the source
+        /// group times this factor and the weight of the source group for the affected group.
         pub cross_group_spillover_factor: f64,
         /// Absolute change that spillover must exceed to be applied.
         pub cross_delta_min_abs: f64,
@@ -148,7 +148,7 @@ parameters! {
         pub competitor_post_shares_ratio: f64,
         /// Number of points of view for press posts about competitors.
         pub post_perspective_count: u32 where 1.0..=255.0,
-        /// Names of the competitors.
+        /// Names of competitors, one of which is drawn for each press post.
         pub competitor_names: Vec<String>,
     }
 

@@ -27,11 +27,11 @@ pub fn is_posting_day(day: u32, params: &Params) -> bool {
     }
 }
 
-/// Sum of the post weights of a block.
+/// Post weights of the subscribers in a block.
 pub struct BlockWeights {
     /// Satisfaction of each row of the block before today's update.
     before: Vec<f64>,
-    /// Sum of the post weights.
+    /// Sum of the post weights of all rows that have not been picked.
     weight: f64,
 }
 
@@ -205,7 +205,7 @@ impl AuthorSelection {
         self.candidates.push(Candidate { time, customer, group, n, satisfaction: None, opinion });
     }
 
-    /// Publishes the posts of the candidates whose clocks ring first.
+    /// Publishes the posts of the candidates with the earliest clock times.
     pub fn publish(mut self, social: &mut Social, params: &Params, streams: &Streams, facts: &mut Facts) {
         self.candidates.sort_by(|one, other| one.time.total_cmp(&other.time));
         self.candidates.truncate(self.remaining_posts);

@@ -16,7 +16,7 @@ pub struct PlannedCall<A> {
     pub notebook_change: Option<NotebookChange>,
     /// Settings row for the database, if it differs from the settings of the simulator.
     pub settings_row: Option<Value>,
-    /// Result of the call, or the steps that compute it.
+    /// Result of the call, or the function that computes it.
     pub reply: Reply<A>,
 }
 
@@ -120,7 +120,7 @@ impl<A> Reply<A> {
     /// Returns the result for a resolved command. `run` executes the script of the call, if the call has a script.
     ///
     /// # Errors
-    /// The rejection of the script.
+    /// Returns the rejection of the script.
     pub fn into_answer(
         self,
         resolved: &ResolvedCommand,

@@ -63,7 +63,7 @@ pub enum DealResult {
     },
     /// The deal failed.
     Failed {
-        /// Number of the customer, if the deal contains a number.
+        /// Customer number in the deal; absent if the deal contains no number.
         #[serde(skip_serializing_if = "Option::is_none")]
         customer_id: Option<i64>,
         /// Reason for the failure.
@@ -72,7 +72,7 @@ pub enum DealResult {
 }
 
 impl DealResult {
-    /// Returns the customer if the deal was sent.
+    /// Returns the customer number if the deal succeeded.
     pub fn sent_customer(&self) -> Option<u32> {
         match self {
             DealResult::Done { customer_id, .. } => Some(*customer_id),

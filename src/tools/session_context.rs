@@ -36,7 +36,7 @@ pub struct ColumnDocument {
     pub name: &'static str,
     /// Declared type of the column.
     pub kind: &'static str,
-    /// All possible values of the column, if they are few.
+    /// All possible values of the column if there are few; otherwise empty.
     pub values: &'static [String],
     /// Description of the column.
     pub description: &'static str,

@@ -7,7 +7,7 @@ use super::super::{
     ToolSpec,
 };
 
-/// The tool `list_all_tables`.
+/// The tool `list_all_tables`, which returns the tables that can be queried.
 pub struct ListAllTables;
 
 static SPEC: ToolSpec = ToolSpec {

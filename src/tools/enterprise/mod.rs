@@ -30,7 +30,7 @@ impl ElementOutcome {
 /// The reason why one element of a list of deals was not sent. The remaining elements of the list are sent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElementFailure {
-    /// Customer number, if the element contains a number.
+    /// Customer number; `None` if the element contains no valid number.
     customer: Option<i64>,
     /// Error text for the result.
     error: String,

@@ -14,7 +14,7 @@ use novamind_world::enterprise::OpenThreads;
 use novamind_world::enterprise::messages::OfferDraft;
 use novamind_world::events::Offering;
 
-/// The tool `send_enterprise_deal`.
+/// The tool `send_enterprise_deal`, which sends offers to enterprises.
 pub struct SendEnterpriseDeal;
 
 const EXAMPLE: &str = r#"[[207, [["B", 31.5], ["C", 54]]]]"#;

@@ -8,7 +8,7 @@ use super::super::{
 };
 use novamind_world::params::Params;
 
-/// The tool `get_cost_info`.
+/// The tool `get_cost_info`, which returns the costs of model tiers and capacity tiers.
 pub struct GetCostInfo;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -63,7 +63,7 @@ pub struct ModelTierFacts {
     pub cost_per_usage_unit: f64,
     /// Factor by which the tier multiplies product quality.
     pub quality_multiplier: f64,
-    /// Class of the model.
+    /// Class of the model, as the parameters name it.
     pub class: String,
 }
 

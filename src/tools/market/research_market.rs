@@ -9,7 +9,7 @@ use super::super::{
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 
-/// The tool `research_market`.
+/// The tool `research_market`, which buys an attempt to discover a group.
 pub struct ResearchMarket;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -46,7 +46,7 @@ static SPEC: ToolSpec = ToolSpec {
 pub enum DiscoveryAttempt {
     /// The attempt discovered a group.
     Found {
-        /// The discovered group.
+        /// Group that the player now knows at study level 1.
         discovered_group_id: Group,
     },
     /// The attempt discovered no group.

@@ -13,7 +13,7 @@ use super::BUDGET_RULE;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedAds};
 
-/// The tool `set_targeted_ad_spend`.
+/// The tool `set_targeted_ad_spend`, which sets the advertising budgets by channel and group.
 pub struct SetTargetedAdSpend;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -57,7 +57,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"targeted_spend": {"linkedin": {"E1": 120}, "search_ads": {"S1": 80, "S3": 40}}}"#,
 };
 
-/// Advertising budgets in force.
+/// Advertising budgets in force after the call.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AdBudgets {
     /// Budgets in dollars per day, by channel and group.

@@ -6,7 +6,7 @@ use super::super::{
     ToolSpec,
 };
 
-/// The tool `get_vars`.
+/// The tool `get_vars`, which returns the current day.
 pub struct GetVars;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -40,7 +40,7 @@ pub(super) trait DayTableDefinition: Send + Sync + Sized + 'static {
     const TEXT_COLUMN: c_int;
     fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str>;
     fn texts(query_view: &QueryView) -> &TextIndexes;
-    /// Sets the result to a table-specific column: a column after the third and before the last.
+    /// Sets the result to the value of a table-specific column, which is a column after the third and before the last.
     fn column(_: &DayRow<'_, Self>, _: c_int, _: &mut Context) -> rusqlite::Result<()> {
         Ok(())
     }

@@ -275,7 +275,7 @@ fn split_numbers(text: &str) -> (String, Vec<u64>) {
     (pattern, numbers)
 }
 
-/// All notices of the inbox.
+/// The inbox of a run: the notices of each day, and the losses that days repeat.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Inbox {
     /// Days with notices, in order.

@@ -244,7 +244,7 @@ struct ProjectionWriter<'a> {
     to_error: fn(rusqlite::Error) -> ProjectionError,
 }
 
-/// Cleared facts that are no longer in use.
+/// Cleared facts whose memory the simulation can reuse.
 #[derive(Clone, Default)]
 struct FactsPool(Arc<Mutex<Vec<Arc<Facts>>>>);
 
@@ -367,8 +367,8 @@ fn open_existing(
     Some((connection, Some(position)))
 }
 
-/// Opens a query connection to a database without a writer. `interface` is the release that its run follows. Also
-/// returns the position of the database.
+/// Opens a connection for queries on a database that no [`Projector`] writes. `interface` is the release that the run
+/// follows. Also returns the trajectory position that the database stores.
 ///
 /// # Errors
 /// The database does not exist, or is not the database of a run.

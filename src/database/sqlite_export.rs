@@ -51,7 +51,7 @@ DROP TABLE repeated_losses;";
 const PAGES_PER_STEP: i32 = 4096;
 
 impl Projector {
-    /// Writes all entries received so far to a new file that any SQLite tool can open.
+    /// Writes all entries that the projector has received to a new file that any SQLite tool can open.
     ///
     /// # Errors
     /// The database could not be written, or the file cannot be created.

@@ -78,7 +78,7 @@ impl NoticeWriter {
         (today == known).then_some(today as u32)
     }
 
-    /// Returns whether a customer has no repeated loss yet, and records that the customer now has one.
+    /// Marks the loss of a customer as repeated. Returns true if the loss was not marked before.
     fn is_new_loss(&mut self, customer: u32) -> bool {
         let at = customer as usize;
         if self.is_loss_repeated.len() <= at {

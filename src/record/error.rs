@@ -78,7 +78,7 @@ pub enum RunError {
         id: String,
         /// Format number in the manifest.
         format: u32,
-        /// Format number of this program.
+        /// Newest format that this program can read.
         known: u32,
     },
     /// Another program is writing the run.

@@ -11,7 +11,7 @@ pub struct StudyStamp {
     pub name: String,
     /// BLAKE3 digest of the study protocol, in hexadecimal digits.
     pub digest: String,
-    /// Condition to which the participant was assigned.
+    /// Condition to which the participant was assigned; `None` if the study has no conditions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub condition: Option<String>,
     /// Position of the participant in the assignment order, from 1.

@@ -101,11 +101,11 @@ pub struct ChartSpec {
 /// The fields in the leading comments of a statement.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct QueryHeader {
-    /// Title of the query.
+    /// Text of the `title` comment.
     pub title: Option<String>,
-    /// Description of the query result.
+    /// Text of the `what` comment, which describes the query result.
     pub description: Option<String>,
-    /// Chart of the query result.
+    /// Chart of the `chart` comment; `None` if the comment is missing or invalid.
     pub chart: Option<ChartSpec>,
 }
 
@@ -114,7 +114,7 @@ pub struct QueryHeader {
 pub struct NamedQuery {
     /// Name of the query file, without the extension.
     pub name: String,
-    /// Title of the query.
+    /// Text of the `title` comment, or the name with spaces if there is no title.
     pub title: String,
     /// Description of the query result; may be empty.
     pub description: String,

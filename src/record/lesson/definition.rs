@@ -37,7 +37,7 @@ pub struct LessonPlan {
     pub measured: Vec<MeasuredFigure>,
 }
 
-/// Tools, screens and submissions of a lesson.
+/// Tools and screens that a lesson offers, and the submissions that it requires before a week.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LessonAccess {

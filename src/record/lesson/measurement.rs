@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use crate::figures::{FigureUnit, WeekFigure, WeekFigures};
 
-/// A measurement over some weeks of a company.
+/// The definition of a measurement over some weeks of a company.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurement {
     /// Source of the weekly numbers.
@@ -13,7 +13,7 @@ pub struct Measurement {
     pub aggregation: WeekAggregation,
 }
 
-/// Source of the numbers of a measurement.
+/// Source of the numbers that a measurement aggregates.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NumberSource {
     /// Cash at the end of each week, dollars.

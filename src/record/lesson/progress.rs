@@ -1,4 +1,4 @@
-//! The progress of a student in a lesson, derived from its plan and the recorded lines.
+//! The progress of a student in a lesson, derived from the lesson plan and the recorded lines.
 
 use std::sync::Arc;
 

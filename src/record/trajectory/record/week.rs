@@ -14,7 +14,7 @@ use novamind_tools::Forecast;
 /// The player's submission before a week is simulated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Advance {
-    /// Rationale of the week.
+    /// The player's reasons for the decisions of the week.
     pub rationale: String,
     /// Forecasts of cash, one forecast for each horizon.
     pub forecasts: Vec<SubmittedForecast>,
@@ -76,14 +76,14 @@ impl SubmittedForecast {
 pub struct ClosedDays {
     /// Number of simulated days.
     pub days_run: u32,
-    /// Figures of the simulated days, by name.
+    /// Visible figures of the simulated days, by JSON key.
     pub figures: Map<String, Value>,
     /// Cash after the simulated days, dollars.
     #[serde(serialize_with = "serialize_shortest")]
     pub cash: f64,
     /// Hash of the complete simulator state.
     pub state_hash: String,
-    /// Prefix of the hash of each part of the state, by name.
+    /// First digits of the hash of each part of the state, by name of the part.
     pub parts: BTreeMap<String, String>,
 }
 
@@ -124,7 +124,7 @@ pub enum RunEndReason {
 }
 
 impl RunEndReason {
-    /// Returns the name of the reason in trajectories.
+    /// Returns the name that trajectories use for the reason.
     pub fn id(self) -> &'static str {
         match self {
             RunEndReason::Horizon => "horizon",

@@ -1,4 +1,4 @@
-//! Bills that were due in the two weeks: the part of the residual that they explain.
+//! Bills that were due in the two weeks, and the part of the residual that the bills explain.
 //!
 //! Individuals decide only on their billing day, every 30 days. The number of renewals in a week therefore follows from
 //! signups of earlier weeks, and no cause of the two weeks changes it. Enterprises pay on a billing day that depends on
@@ -51,7 +51,8 @@ pub(super) fn due_contributions(quantity: WeekQuantity, weeks: &TwoWeeks) -> Vec
     }
 }
 
-/// Returns the contributions to cancellations, divided by `denominators`.
+/// Returns the contributions of the due bills to cancellations, or to churn if `denominators` contains the subscribers
+/// of each week instead of 1.
 fn of_cancellations(weeks: &TwoWeeks, groups: &[Group], denominators: [f64; 2]) -> Vec<CauseContribution> {
     if denominators.contains(&0.0) {
         return Vec::new();
@@ -75,7 +76,7 @@ fn of_subscribers(weeks: &TwoWeeks, groups: &[Group]) -> Vec<CauseContribution> 
     if bills > 0 { vec![part] } else { Vec::new() }
 }
 
-/// Returns the contributions to payments.
+/// Returns the contributions of the due bills to payments, in dollars.
 fn of_payments(cause: Cause, weeks: &TwoWeeks, groups: &[Group]) -> Vec<CauseContribution> {
     let bills = sums(weeks, groups, |due| due.bills);
     let dollars = weeks
@@ -99,8 +100,8 @@ fn of_compute(weeks: &TwoWeeks, sign: f64) -> CauseContribution {
     }
 }
 
-/// Returns the contribution of the number of bills, and of the open issues of the subscribers who are due. `read`
-/// returns the volume and the outcome of the bills of a week.
+/// Returns the contributions of the number of bills and of the open issues of the individuals who are due. `read`
+/// returns the volume and the outcome of the bills in a week.
 fn contributions(
     weeks: &TwoWeeks,
     groups: &[Group],
@@ -143,7 +144,7 @@ fn sums(weeks: &TwoWeeks, groups: &[Group], read: fn(&DueBills) -> u32) -> [u32;
 }
 
 /// Returns the part of the change in `outcomes` that the change in `volumes` explains at the mean outcome per volume of
-/// the two weeks. If a week has no volume, the outcome per volume of the other week counts.
+/// the two weeks. If a week has no volume, the outcome per volume of the other week is used.
 fn volume_effect(volumes: [f64; 2], outcomes: [f64; 2]) -> f64 {
     let rates: Vec<f64> = volumes
         .into_iter()

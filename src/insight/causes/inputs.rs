@@ -71,8 +71,9 @@ impl WeekPair<'_> {
         found
     }
 
-    /// Fixes world inputs at their values of the previous week. `undone` contains the days of the explained week
-    /// without the player's calls. The fixed utilization is computed from the usage on these days.
+    /// Returns the world inputs of `causes`, fixed at their values of the previous week. `undone` contains the days of
+    /// the explained week, simulated without the player's calls. The fixed utilization follows from the usage on these
+    /// days.
     pub(super) fn fix_inputs(
         &self,
         causes: impl Iterator<Item = Cause>,

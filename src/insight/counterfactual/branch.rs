@@ -56,7 +56,7 @@ pub(crate) struct BranchOutcome {
 /// A call that a re-simulation rejects.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RejectedCall {
-    /// Line of the call in the trajectory of the run; `None` for an added call.
+    /// Line of the call in the trajectory of the recorded run; `None` for an added call.
     pub seq: Option<u64>,
     /// Decision day of the call.
     pub day: u32,
@@ -227,7 +227,8 @@ impl<'a> BranchSimulation<'a> {
         self.simulate_days(until, progress)
     }
 
-    /// Executes a recorded call, unless the edits drop it. Uses changed arguments if the edits contain any.
+    /// Executes a recorded call with its changed arguments, if any. Skips a dropped call. For a call that the run
+    /// rejected, only records whether the branch would accept it.
     fn replay_call(&mut self, call: &RecordedCall) {
         if self.edits.dropped_lines.contains(&call.seq) {
             return;

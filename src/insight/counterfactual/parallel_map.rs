@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::ThreadPoolBuilder;
 
-/// A flag with which one simulation stops all others.
+/// A flag that one simulation sets to stop all others.
 pub(crate) struct StopFlag(AtomicBool);
 
 impl StopFlag {

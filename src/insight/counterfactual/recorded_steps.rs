@@ -9,7 +9,7 @@ use novamind_record::trajectory::{Line, Record};
 use novamind_session::engine::{ParameterChange, value_to_json};
 use novamind_tools::{ToolId, ToolKind};
 
-/// A recorded step that changed the company.
+/// A recorded step that can change the company.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum RecordedStep {
     /// A tool call that can change the company.

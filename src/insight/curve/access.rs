@@ -85,7 +85,7 @@ impl CurveExplorer {
     }
 }
 
-/// Source of a curve, current plans, and the markets that match the estimates: the likely market first.
+/// Source of a curve, current offer, and the markets that match the estimates, with the likely market first.
 type EstimatedMarkets = (CurveBasis, CurrentOffer, Vec<(Expectation, Arc<Params>)>);
 
 fn estimated_markets(run: &Session, group: Group) -> Result<EstimatedMarkets, Rejection> {

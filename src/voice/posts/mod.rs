@@ -20,7 +20,7 @@ use novamind_world::events::{Post, PostSubject};
 use novamind_world::params::Params;
 use novamind_world::random::{Part, Streams};
 
-/// Writes posts in order and remembers recent posts to avoid repetition.
+/// A writer of posts that remembers the recent posts to avoid repetition. Posts must be written in order.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct PostWriter {
     recent: RecentPosts,

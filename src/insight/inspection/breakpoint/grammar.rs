@@ -87,7 +87,7 @@ impl<'a> TokenReader<'a> {
         })
     }
 
-    /// Reads a group in brackets, for example `(S1)`, if the next token is a bracket.
+    /// Reads a group in parentheses, for example `(S1)`, if the next token is an opening parenthesis.
     pub(crate) fn parse_group(&mut self) -> Result<Option<Group>, ConditionParseError> {
         if !self.next_if("(") {
             return Ok(None);
@@ -255,7 +255,7 @@ fn parse_predicate(words: &mut TokenReader<'_>) -> Result<FigurePredicate, Condi
     words.parse_number().map(|threshold| FigurePredicate::Compared(relation, threshold))
 }
 
-/// Rejects a share above 1, which was probably meant as a percentage.
+/// Rejects a threshold above 1 for a share. The user probably meant a percentage.
 fn check_share_threshold(
     measure: Measure,
     judgement: &FigurePredicate,

@@ -44,7 +44,7 @@ impl MeasuredDay {
     }
 }
 
-/// Records the figures of consecutive days from day 1.
+/// The recorded figures of consecutive days, from day 1.
 #[derive(Debug, Default)]
 pub(crate) struct MeasuredDays {
     recorded: Mutex<RecordedMeasurements>,

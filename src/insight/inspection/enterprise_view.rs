@@ -19,7 +19,7 @@ pub struct EnterpriseView {
     pub group: Group,
     /// Last day of the view.
     pub day: u32,
-    /// Evaluated threads of the enterprise, by day.
+    /// Evaluations of the enterprise's threads, one per thread and day, in ascending order of day.
     pub days: Vec<EnterpriseThreadDay>,
 }
 
@@ -47,7 +47,7 @@ impl EnterpriseView {
     }
 }
 
-/// Records the open threads of one enterprise on each day.
+/// A recorder of one enterprise's open threads on each day.
 struct EnterpriseRecorder {
     customer: u32,
     days: Mutex<Vec<EnterpriseThreadDay>>,

@@ -13,16 +13,16 @@ use novamind_tools::Rejection;
 /// A breakpoint whose condition became true.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BreakpointHit {
-    /// The breakpoint that was reached.
+    /// The breakpoint, with its number and condition.
     pub breakpoint: Breakpoint,
-    /// State of the breakpoint's condition.
+    /// State of the condition on the evaluated day.
     pub state: ConditionState,
 }
 
 /// The simulated days and the breakpoints that stopped the simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BreakpointRun {
-    /// First simulated day.
+    /// Day at the end of which the simulation started; the next day is the first simulated day.
     pub from: u32,
     /// Figures of the last week, and notifications of all days.
     pub week: WeekResult,

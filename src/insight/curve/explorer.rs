@@ -148,8 +148,8 @@ impl CurveExplorer {
         explorer
     }
 
-    /// Creates a curve explorer without the points of the curve, which take much longer to compute than the decisions of
-    /// leads.
+    /// Creates a curve explorer without the points of the curve, which take much longer to compute than the decisions
+    /// of leads.
     pub(super) fn without_points(
         group: Group,
         basis: CurveBasis,

@@ -19,12 +19,12 @@ pub struct CancellationEffect {
     pub change: f64,
 }
 
-/// The contribution of a group's subscribers to its reputation.
+/// The contribution of a group's subscribers to the reputation in the group.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SubscriberContribution {
     /// Number of contributing subscribers.
     pub subscribers: u32,
-    /// Change due to the subscribers' satisfaction, before the threshold.
+    /// Change due to the subscribers' satisfaction, before the threshold is applied.
     pub requested_change: f64,
     /// Whether the change reached the threshold and was therefore applied.
     pub is_applied: bool,
@@ -52,7 +52,7 @@ pub(crate) struct ReputationDay {
     individual_departures: ByGroup<CancellationEffect>,
     enterprise_departures: ByGroup<CancellationEffect>,
     contributions: ByGroup<SubscriberContribution>,
-    /// Spillovers with a positive weight, in the order of the day.
+    /// Spillovers with a positive weight, in the order in which they occurred.
     spillovers: Vec<SpilloverEffect>,
     bounds: ByGroup<f64>,
     after: ByGroup<f64>,

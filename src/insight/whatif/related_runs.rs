@@ -1,5 +1,5 @@
-//! The tree of related runs. Each branch is shown with its first week, its first different decision, and its current
-//! state.
+//! The tree of related runs. Each branch is listed with its first week, the first decision that differs from its
+//! parent, and its current state.
 
 use std::path::Path;
 

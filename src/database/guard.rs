@@ -255,7 +255,7 @@ impl Guard {
         })
     }
 
-    /// Returns a guard without internal tables.
+    /// Returns a guard for a connection that has no internal tables.
     pub fn for_ordinary_tables(connection: &Connection, surface: Surface) -> rusqlite::Result<Guard> {
         let existing = existing_names(connection)?;
         Ok(Guard {

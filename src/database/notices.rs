@@ -36,7 +36,7 @@ pub(super) struct RepeatedLoss {
     pub customer: u32,
     /// Day of the unanswered message.
     pub message_day: u32,
-    /// Cause of the loss.
+    /// Side whose silence caused the loss.
     pub cause: LossCause,
 }
 

@@ -25,7 +25,7 @@ pub enum RunError {
     Damaged {
         /// Path of the file.
         path: PathBuf,
-        /// Line number, from 1.
+        /// Number of the damaged line, from 1.
         line: usize,
         /// Description of the defect.
         problem: String,

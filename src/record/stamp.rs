@@ -7,7 +7,7 @@ use crate::mode::Mode;
 /// The study to which a run belongs, and the assignment of the participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StudyStamp {
-    /// Name of the study.
+    /// Name of the study, from its protocol.
     pub name: String,
     /// BLAKE3 digest of the study protocol, in hexadecimal digits.
     pub digest: String,
@@ -59,7 +59,7 @@ pub struct EarlierRun {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonStamp {
-    /// Name of the lesson.
+    /// Name of the lesson files, without the extension.
     pub name: String,
     /// Digest of the plan and texts of the lesson.
     pub digest: String,

@@ -90,7 +90,7 @@ pub enum ChartKind {
 /// A chart of a query result: the kind of the chart and its column names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ChartSpec {
-    /// Kind of the chart.
+    /// Whether lines or bars are drawn.
     pub kind: ChartKind,
     /// Name of the column for the x axis.
     pub x_column: String,
@@ -116,7 +116,7 @@ pub struct NamedQuery {
     pub name: String,
     /// Text of the `title` comment, or the name with spaces if there is no title.
     pub title: String,
-    /// Description of the query result; may be empty.
+    /// Text of the `what` comment, which describes the query result; may be empty.
     pub description: String,
     /// SQL statement with its leading comments.
     pub sql: String,

@@ -28,7 +28,7 @@ pub struct RunSummary {
     pub played: String,
     /// Mode of the run; `None` if the run cannot be read.
     pub mode: Option<Mode>,
-    /// Seed of the run.
+    /// Seed of all random draws.
     pub seed: u64,
     /// Name of the scenario.
     pub scenario: String,

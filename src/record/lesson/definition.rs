@@ -160,7 +160,7 @@ pub struct LessonStep {
     pub parameters: BTreeMap<String, Value>,
     /// Question that the student answers before the step is simulated.
     pub guess: Option<Guess>,
-    /// Goals of the step.
+    /// Goals that are checked at the end of the step.
     #[serde(rename = "goal", default)]
     pub goals: Vec<LessonGoal>,
     /// Hints in the order in which they are shown, from a vague hint to the almost complete solution.
@@ -336,7 +336,7 @@ impl TryFrom<RawGoal> for LessonGoal {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "RawPitfall")]
 pub struct Pitfall {
-    /// Name of the pitfall.
+    /// Name by which the pitfall play and recorded events refer to the pitfall.
     pub name: String,
     /// Part in which the pitfall is checked, from 0.
     pub part: usize,

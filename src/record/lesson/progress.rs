@@ -107,8 +107,8 @@ impl LessonProgress {
         }
     }
 
-    /// Rejects the simulation of the next week if the question of its step is unanswered. `weeks` is the number of
-    /// weeks already simulated.
+    /// Rejects the simulation of the next week if the student has not answered the question of that week's step.
+    /// `weeks` is the number of weeks already simulated.
     ///
     /// # Errors
     /// The rejection `guess_first`.

@@ -16,7 +16,7 @@ use novamind_database::ProjectionPosition;
 /// A parsed line of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// Line number, from 0.
+    /// Number of the line in the trajectory, from 0.
     pub seq: u64,
     /// Day of the run on which the line was written.
     pub day: u32,

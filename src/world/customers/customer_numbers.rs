@@ -20,9 +20,9 @@ pub struct ArrivalRun {
     pub day: u32,
     /// Group of the customers.
     pub group: Group,
-    /// Customer number of the first customer.
+    /// Lowest customer number in the arrival run.
     pub first_customer: u32,
-    /// Sequence number of the first customer within the group.
+    /// Lowest sequence number, within the group, in the arrival run.
     pub first_n: u32,
     /// Number of customers in the arrival run.
     pub count: u32,

@@ -39,11 +39,11 @@ const MIN_LARGE_SPLIT_BLOCKS: usize = 24;
 /// All customers of a run. Active customers are stored in columns. For other customers, only the numbers are stored.
 #[derive(Debug, Clone)]
 pub struct Customers {
-    /// Customers of each group.
+    /// Active customers of each group, and the number of its customers so far.
     pub groups: ByGroup<GroupCustomers>,
-    /// Number of the next customer.
+    /// Customer number that the next lead receives, from [`FIRST_CUSTOMER`].
     pub next_customer: u32,
-    /// Number of the next subscription.
+    /// Number that the next subscription row receives, from 1.
     pub next_subscription: u32,
     /// Mapping between customer numbers, groups and days of arrival.
     pub numbers: CustomerNumbers,

@@ -8,7 +8,7 @@ use crate::identifiers::Group;
 /// longer trigger.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thread {
-    /// Number of the thread, from 1.
+    /// Number of the thread among all threads of the run, from 1.
     pub number: u32,
     /// Customer number of the enterprise.
     pub customer: u32,
@@ -29,7 +29,7 @@ pub struct Turn {
     pub message: u32,
     /// Number of the turn within the thread. Turns of the same tool call can have the same number.
     pub number: u32,
-    /// Sender of the turn.
+    /// Side that added the turn: the system, the enterprise or the player.
     pub sender: Sender,
     /// Day on which the turn was added.
     pub day: u32,

@@ -159,7 +159,7 @@ pub enum LossCause {
 /// The public reaction to a post of the player.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reaction {
-    /// Number of the post.
+    /// Number of the post among the player's posts, from 1.
     pub post: u32,
     /// Number of views of the post.
     pub views: u64,

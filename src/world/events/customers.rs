@@ -234,7 +234,7 @@ pub struct UsageRows {
 /// A support issue that was opened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct IssueOpened {
-    /// Number of the issue.
+    /// Number of the issue among all issues of the run, from 1.
     pub issue: u32,
     /// Number of the customer who opened the issue.
     pub customer: u32,

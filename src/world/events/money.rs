@@ -29,7 +29,7 @@ pub struct Payment {
 pub enum Category {
     /// Cash with which the company starts on day 0.
     InitialFunding,
-    /// Acquisition cost of leads.
+    /// Cost of every lead, in addition to advertising.
     LeadAcquisitionCost,
     /// Payment of a subscriber.
     SubscriptionPayment,

@@ -24,7 +24,7 @@ canonical_codes! {
 /// A post that the player did not write.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Post {
-    /// Number of the post.
+    /// Number of the post among the posts that the player did not write, from 1.
     pub post: u32,
     /// Author of the post, or `None` for the market observer.
     pub author: Option<PostAuthor>,
@@ -32,7 +32,7 @@ pub struct Post {
     pub sentiment: Sentiment,
     /// Engagement of the post, hidden from the player.
     pub engagement: Engagement,
-    /// Subject of the post.
+    /// What the post is about, with the values for its text.
     pub matter: PostSubject,
 }
 
@@ -62,7 +62,7 @@ pub struct Engagement {
 /// A customer who writes a post.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PostAuthor {
-    /// Customer number of the author.
+    /// Customer number, unique across all groups.
     pub customer: u32,
     /// Group of the customer.
     pub group: Group,
@@ -92,7 +92,7 @@ pub enum PostSubject {
     },
     /// A competitor event.
     CompetitorEvent {
-        /// Number of the competitor.
+        /// Index of the competitor's name in the parameter `competitor_names`.
         name: u8,
         /// Number of the perspective from which the author writes.
         perspective: u8,
@@ -291,22 +291,22 @@ pub enum Theme {
 /// A post that the player published.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OwnPostMade {
-    /// Number of the post.
+    /// Number of the post among the player's posts, from 1.
     pub post: u32,
     /// Text of the post.
     pub content: String,
-    /// Number of the post to which the player replies.
+    /// Number of the post to which the player replies; `None` if the post is not a reply.
     pub reply_to: Option<u32>,
 }
 
 /// A post of the player that was seen and judged.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OwnPostSeen {
-    /// Number of the post.
+    /// Number of the post among the player's posts, from 1.
     pub post: u32,
     /// Number of views of the post.
     pub views: u64,
-    /// Numbers of the comments on the post.
+    /// Numbers of the comments on the post, among the posts that the player did not write.
     pub comments: Vec<u32>,
 }
 

@@ -151,7 +151,7 @@ impl Restore for TurnContent {
 pub struct ThreadTurn {
     /// Number of the turn among the turns of all threads.
     pub message: u32,
-    /// Number of the thread.
+    /// Number of the thread among all threads of the run, from 1.
     pub thread: u32,
     /// Customer number of the enterprise.
     pub customer: u32,
@@ -163,11 +163,11 @@ pub struct ThreadTurn {
     pub kind: ThreadKind,
     /// Number of the turn within the thread, from 0.
     pub number: u32,
-    /// Sender of the turn.
+    /// Side that added the turn: the system, the enterprise or the player.
     pub sender: Sender,
     /// Number of whole seats; 1 in turns that the player adds to a thread.
     pub seats: u32,
-    /// Content of the turn.
+    /// What the turn offers, asks or states, as data for its text.
     pub content: TurnContent,
 }
 

@@ -25,7 +25,7 @@ use crate::retention::required_at_price;
 /// Number of leads of a day, by outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeadCounts {
-    /// Number of all leads.
+    /// Number of all leads, including enterprises below the quality gate.
     pub all: u32,
     /// Number of individual leads.
     pub individuals: u32,
@@ -37,7 +37,7 @@ pub struct LeadCounts {
 
 /// Inputs that all arrivals of a day share.
 pub struct ArrivalContext<'a> {
-    /// Context of the day.
+    /// Values that all customer mechanisms of the day share.
     pub day: &'a DayContext<'a>,
     /// The market, including today's changes.
     pub market: &'a Market,
@@ -167,7 +167,7 @@ fn plan_offers(arrivals: &ArrivalContext<'_>, group: Group) -> ByPlan<PlanOffer>
 /// The decision of an individual lead, with the inputs of the decision.
 #[derive(Debug, Clone, Copy)]
 pub struct LeadEvaluation {
-    /// Plans that are offered to the lead.
+    /// Price, quality and quota of each plan on the day of arrival.
     pub offers: ByPlan<PlanOffer>,
     /// Discount for the lead's group and channel, dollars per month.
     pub discount: f64,

@@ -14,7 +14,7 @@ use crate::series::RecordedEvent;
 /// A competitor's gain in quality, which raised the expectations of customers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CompetitorEvent {
-    /// Day of the event.
+    /// Day on which the gain was applied.
     pub day: u32,
     /// Gain in quality that was applied.
     pub boost: f64,
@@ -94,7 +94,7 @@ pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, params: &Pa
 /// A competitor's move on a day, before the move is applied.
 #[derive(Debug, Clone)]
 pub struct CompetitorMove {
-    /// Day of the move.
+    /// Day on which the move takes effect.
     pub day: u32,
     /// Drawn gain in quality, scaled by the growth over the run.
     pub sampled: f64,

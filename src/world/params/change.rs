@@ -25,7 +25,7 @@ pub struct ParameterDifference {
 }
 
 impl Params {
-    /// Returns the value of a parameter, or of a list or table of parameters.
+    /// Returns the value of a key, which names a parameter, a list or a table of parameters.
     ///
     /// # Errors
     /// Returns an error that lists similar names if no parameter has this name.

@@ -271,9 +271,9 @@ pub struct EnterprisePersona {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EmailParts {
-    /// First names (48).
+    /// 48 first names for the local part of an address.
     pub first_names: Vec<String>,
-    /// Last names (48).
+    /// 48 last names for the local part of an address.
     pub last_names: Vec<String>,
     /// Company words of the domain (20).
     pub company_domains: Vec<String>,

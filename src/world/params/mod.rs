@@ -195,7 +195,8 @@ impl Params {
         self.digest_without(|value, earlier| value == earlier)
     }
 
-    /// Returns the digest that versions without the keys of `ADDED_KEYS` computed for the same parameters.
+    /// Returns the digest that earlier versions, which did not have the keys of `ADDED_KEYS`, computed for the same
+    /// parameters.
     pub fn earlier_digest(&self) -> String {
         self.digest_without(|_, _| true)
     }

@@ -113,7 +113,7 @@ parameters! {
     pub struct ModelTier {
         /// Number of the model tier, 1..=5.
         pub tier: u8,
-        /// Class of the model.
+        /// Class of the model, for instance `Haiku/Flash`.
         pub class: String,
         /// Compute cost, dollars per usage unit.
         pub unit_cost: f64 where 0.0..=1e6,
@@ -135,7 +135,7 @@ parameters! {
     pub struct ResearchTier {
         /// Number of the R&D tier, 1..=20.
         pub tier: u8,
-        /// Name of the tier.
+        /// Display name, for instance `Evaluation & Testing Pipeline`.
         pub name: String,
         /// Price of a project, dollars.
         pub cost: u32 where 0.0..=4e9,

@@ -102,8 +102,8 @@ pub struct Horizon {
 }
 
 impl Run {
-    /// Returns the horizon of a run with a length of `days`. A run with the length `last_day` of the result has the
-    /// same last day, and a run with the length `total_days` of the result has the same horizon.
+    /// Returns the horizon of a run whose length is `days`. If `total_days` of the result is used as the length, the
+    /// horizon is the same. If `last_day` of the result is used as the length, the last day is the same.
     pub fn horizon(&self, days: u32) -> Horizon {
         let week = self.days_per_week;
         match self.horizon_rule {

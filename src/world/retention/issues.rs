@@ -69,7 +69,7 @@ pub fn relationship_after_waiting(relationship: f64, issues: &Issues, quality: &
 /// The counter that numbers issues.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct IssueCounter {
-    /// Number of the next issue.
+    /// Number that the next issue receives, from 1.
     pub next_issue: u32,
 }
 

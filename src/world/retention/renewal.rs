@@ -44,9 +44,9 @@ pub fn group_involuntary_rate(group: Group, day: u32, params: &Params, streams: 
 /// An individual who cancelled today because no plan was acceptable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CancelledIndividual {
-    /// Customer number of the individual.
+    /// Customer number, unique across all groups.
     pub customer: u32,
-    /// Group of the individual.
+    /// Group to which the individual belongs.
     pub group: Group,
     /// Sequence number of the individual within the group.
     pub n: u32,
@@ -75,7 +75,7 @@ pub struct RenewalResults {
 
 /// Inputs that all billing decisions of a day share.
 pub struct RenewalContext<'a> {
-    /// Context of the day.
+    /// Values that all customer mechanisms of the day share.
     pub day: &'a DayContext<'a>,
     /// Monthly rate of involuntary churn of each group.
     pub involuntary: ByGroup<f64>,

@@ -137,8 +137,9 @@ impl ResolutionRound<'_> {
     }
 }
 
-/// Open issues of a group in a pool, in block order, stored as runs of consecutive entries of an [`IssueBatch`]. A
-/// block is a single run if the pool contains all its issues and none is resolved, as in the first pool of a day.
+/// The open issues that one group has in a pool, in block order. They are stored as runs of consecutive entries of an
+/// [`IssueBatch`]. A block is a single run if the pool contains all its issues and none is resolved, as in the first
+/// pool of a day.
 #[derive(Default)]
 struct PoolMembers {
     runs: Vec<MemberRun>,

@@ -90,7 +90,7 @@ pub struct ClosedDays {
 /// A parameter change in a debug run or a lesson.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Override {
-    /// Key of a parameter, or of a list or table of parameters: `table.key`, `group.S1.c_max_mean`.
+    /// Key of a parameter, a list or a table of parameters, for instance `group.S1.c_max_mean`.
     pub key: String,
     /// Value before the change.
     pub old: Value,
@@ -156,7 +156,7 @@ fn required_nullable<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Paren
 /// The output of a calculation before a week.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CalculationOutput {
-    /// Name of the calculation.
+    /// Name under which the player registered the calculation.
     pub name: String,
     /// Output of the calculation, truncated to the length that the dashboard shows.
     pub output: String,

@@ -13,7 +13,7 @@ use crate::quality::{quota_demand, quota_factor, relationship_as_read, relations
 /// Inputs that all opinions of a day share.
 #[derive(Clone, Copy)]
 pub struct OpinionContext<'a> {
-    /// Context of the day.
+    /// Values that all customer mechanisms of the day share.
     pub day: &'a DayContext<'a>,
     /// Record of the company's last four weeks.
     pub chronicle: &'a Chronicle,

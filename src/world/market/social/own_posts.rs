@@ -11,7 +11,7 @@ pub struct OwnPost {
     pub day: u32,
     /// Text of the post: at most 280 code points, not blank.
     pub content: String,
-    /// Number of the post to which the player replies.
+    /// Number of the post to which the player replies; `None` if the post is not a reply.
     pub reply_to: Option<u32>,
     /// Reaction of each group, -1..=1, or 0 for unknown groups. `None` before the post is judged.
     pub effects: Option<ByGroup<f64>>,

@@ -382,9 +382,9 @@ impl WhatIf {
         }
     }
 
-    /// Returns the last day that can be simulated, and whether the run or a lesson step ends on this day. In an unfinished
-    /// lesson, the simulation stops at the end of the current step, because the next step can ask the student to guess the
-    /// outcome.
+    /// Returns the last day that can be simulated, and whether the run or a lesson step ends on this day. In an
+    /// unfinished lesson, the simulation stops at the end of the current step, because the next step can ask the
+    /// student to guess the outcome.
     fn last_possible_day(&self) -> (u32, &'static str) {
         let (days, last) = (self.run.days_per_week(), self.run.manifest.days);
         let step_end = self.lesson.as_ref().and_then(|lesson| {

@@ -1,8 +1,8 @@
 //! Speed of simulation on this machine: one row per operation that users or programs wait for.
 //!
-//! Each [`BenchCase`] is measured in a separate process, so that its peak memory can be measured. A case returns samples of
-//! one or more [`BenchFigure`]s. The value of a figure is the median of its samples. [`CASES`] covers the simulator.
-//! Other crates can add cases, for example for the console.
+//! Each [`BenchCase`] is measured in a separate process, so that its peak memory can be measured. A case returns
+//! samples of one or more [`BenchFigure`]s. The value of a figure is the median of its samples. [`CASES`] covers the
+//! simulator. Other crates can add cases, for example for the console.
 //!
 //! **Where the subscribers come from.** All cases play the policy P1a (the paper's best configuration) with
 //! seed 42. The 500-day figures play the same company. The company reaches 10,000, 40,000 and 165,000

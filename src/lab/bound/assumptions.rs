@@ -1,6 +1,6 @@
 //! Assumptions of the account: the plan with its numbers from the paper.
 
-/// The assumed plan, whose result the account computes.
+/// The plan that the account assumes, and of which it computes the result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundAssumptions {
     /// Slack: targeted development spending as a multiple of the required spending.

@@ -23,13 +23,13 @@ pub struct ComparisonRow {
 }
 
 impl ComparisonRow {
-    /// Returns the measure for the unit of the row.
+    /// Returns the measure that formats values in the unit of the row.
     pub(super) fn measure(&self) -> Measure {
         measure_for_unit(self.unit)
     }
 }
 
-/// Returns the measure, which formats values, for a unit.
+/// Returns the measure that formats values in a unit.
 pub fn measure_for_unit(unit: &str) -> Measure {
     match unit {
         "dollars" => Measure::Dollars,
@@ -47,7 +47,7 @@ pub struct PublishedRange {
     pub least: f64,
     /// Highest published value.
     pub most: f64,
-    /// Description of the published values, because definitions differ.
+    /// Description of the published values, whose definition can differ from the definition of the figure.
     pub what: &'static str,
 }
 

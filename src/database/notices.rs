@@ -32,7 +32,7 @@ pub(super) fn type_index(notice: &Notice) -> u8 {
 /// A lost lead that is reported again every day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct RepeatedLoss {
-    /// Number of the lost customer.
+    /// Customer number of the lost lead.
     pub customer: u32,
     /// Day of the unanswered message.
     pub message_day: u32,

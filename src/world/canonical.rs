@@ -50,7 +50,7 @@ impl CanonicalHasher {
         }
     }
 
-    /// Creates a hasher that only collects bytes, with capacity for `room` bytes.
+    /// Creates a hasher that only collects bytes. `room` is the expected number of bytes.
     pub fn collector(room: usize) -> CanonicalHasher {
         let hasher = blake3::Hasher::new();
         CanonicalHasher { hasher, pending: Vec::with_capacity(room), chunk_bytes: usize::MAX }

@@ -71,7 +71,7 @@ mod tests {
 
     const LOAD_FACTOR: f64 = 1000.0;
 
-    /// Returns the world of a company at the end of day `eve`, with its parameters and streams.
+    /// Returns the world of a company at the end of a day, with its parameters and streams.
     fn company_at_end_of_day(eve: u32) -> (World, Params, Streams) {
         let (params, streams) = (Params::bundled(), Streams::new(9));
         let mut facts = Facts::default();

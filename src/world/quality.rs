@@ -79,7 +79,7 @@ pub struct QualityTerms {
     pub delivered: f64,
     /// Quality bonus from the relationship, negative below the neutral point.
     pub relationship: f64,
-    /// Quality bonus from tenure.
+    /// Quality bonus that grows with the number of days as a subscriber.
     pub tenure: f64,
     /// Quota factor, 0..=1, by which quality terms are multiplied.
     pub quota: f64,

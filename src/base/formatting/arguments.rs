@@ -8,7 +8,7 @@ use serde_json::Value;
 pub struct Argument {
     /// Name of the argument, or `None` for a bare value.
     pub key: Option<String>,
-    /// Value of the argument.
+    /// Value as JSON; a bare word is a string.
     pub value: Value,
     /// Column of the argument's first character, counted from 1.
     pub column: usize,

@@ -281,8 +281,8 @@ pub fn find_run_to_read(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
     find_matching_run(runs, id, |_| true)
 }
 
-/// Finds a run by id, by unique prefix, or as the `latest` run that `wanted` accepts. In the common folder, searches
-/// the runs of all participants.
+/// Finds a run by id, by unique prefix, or as the `latest` run that `wanted` accepts. In the common folder, also
+/// searches the runs of all participants.
 fn find_matching_run(
     runs: &Path,
     id: &str,

@@ -105,8 +105,8 @@ impl Measurement {
         }
     }
 
-    /// Returns the aggregate of a figure over weeks. Returns `None` if the source is an SQL statement, or if no week
-    /// has a value to take the last or the mean of.
+    /// Returns the aggregate of a figure over weeks. Returns `None` if the source is an SQL statement. Also returns
+    /// `None` if no week has a value, unless the aggregation is a sum.
     pub fn aggregate<'a>(&self, weeks: impl Iterator<Item = &'a WeekFigures>) -> Option<f64> {
         let value = |week: &WeekFigures| match &self.source {
             NumberSource::Cash => Some(week.cash),

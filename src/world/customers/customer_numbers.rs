@@ -34,7 +34,7 @@ canonical! {
 }
 
 impl ArrivalRun {
-    /// Returns the sequence number and the customer number of every customer.
+    /// Returns the sequence number and the customer number of each customer in the arrival run.
     pub fn numbers(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
         (self.first_n..self.first_n + self.count).zip(self.first_customer..)
     }

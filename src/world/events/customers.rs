@@ -96,7 +96,7 @@ pub struct ChannelLeads {
 /// A customer who arrived today.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arrival {
-    /// Customer number of the new customer.
+    /// Customer number, unique across all groups.
     pub customer: u32,
     /// Group of the customer.
     pub group: Group,

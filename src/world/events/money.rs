@@ -92,7 +92,7 @@ impl Category {
 /// A cash movement other than a payment of a subscriber or a lead cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LedgerEntry {
-    /// Category of the cash movement.
+    /// What the money was spent on or received for.
     pub category: Category,
     /// Amount in dollars. Costs are negative.
     pub amount: f64,

@@ -90,7 +90,7 @@ pub enum PostSubject {
         /// Number of the perspective from which the author writes.
         perspective: u8,
     },
-    /// A competitor event.
+    /// A competitor's gain in quality, as the press estimates it.
     CompetitorEvent {
         /// Index of the competitor's name in the parameter `competitor_names`.
         name: u8,

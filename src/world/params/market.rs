@@ -53,7 +53,7 @@ parameters! {
         pub base_rep_per_customer: f64,
         /// Weight of negative satisfaction relative to positive satisfaction.
         pub negative_satisfaction_multiplier: f64,
-        /// Minimum group size in the calculation of the daily change.
+        /// Minimum number of contributing subscribers that the formula of the daily change uses.
         pub min_group_size: u32,
         /// Minimum absolute daily change that is applied.
         pub daily_delta_min_abs: f64,
@@ -74,7 +74,7 @@ parameters! {
         pub cancel_damage_noise_offset: f64,
         /// Coefficient of squared negative satisfaction in the factor of the reputation damage.
         pub cancel_negative_satisfaction_coef: f64,
-        /// Minimum group size in the calculation of event damage.
+        /// Minimum number of subscribers that the formula of the event damage uses.
         pub event_scale_min_group_size: u32,
     }
 

@@ -102,7 +102,7 @@ parameters! {
         pub competitor: Competitor,
         /// Preference drift.
         pub drift: Drift,
-        /// The economy and its publication.
+        /// The hidden PMI, its publication and its effects.
         pub economy as "macro": MacroEconomy,
         /// Posts that customers write.
         pub social: SocialParams,

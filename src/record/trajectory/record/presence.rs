@@ -23,7 +23,7 @@ pub struct Presence {
     /// Size of the terminal, in columns and rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window: Option<(u16, u16)>,
-    /// Version of the program.
+    /// Version of the program that recorded the event.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub version: Option<String>,
     /// Milliseconds since the last key press, if the user was idle.

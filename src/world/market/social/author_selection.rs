@@ -66,8 +66,8 @@ pub struct AuthorSelection {
     remaining_posts: usize,
 }
 
-/// Starts the selection among all subscribers, directly after the satisfaction update. `voices` has one element per
-/// non-empty block, in block order.
+/// Starts the selection among all subscribers, directly after the satisfaction update. `voices` has one element for
+/// each non-empty block, in block order.
 pub fn from_subscribers(
     mut voices: Vec<BlockWeights>,
     customers: &Customers,

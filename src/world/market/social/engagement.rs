@@ -7,9 +7,9 @@ use crate::random::Stream;
 /// Random draws for the engagement of a post: base likes, base shares and uniform draws, in draw order.
 #[derive(Debug, Clone, Copy)]
 pub struct EngagementDraws {
-    /// Base number of likes.
+    /// Number of likes before the engagement factor is applied.
     pub likes: u32,
-    /// Base number of shares.
+    /// Number of shares before the engagement factor is applied.
     pub shares: u32,
     /// Uniform draw of the engagement factor.
     pub factor: f64,

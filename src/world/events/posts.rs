@@ -310,7 +310,7 @@ pub struct OwnPostSeen {
     pub comments: Vec<u32>,
 }
 
-/// Severity of a competitor event that the press reports.
+/// Severity that the press reports for a competitor event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// Gain in quality below 0.03.

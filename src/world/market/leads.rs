@@ -96,7 +96,7 @@ pub struct LeadContext<'a> {
     pub day: u32,
     /// Calendar factor: weekday factor times day-of-month factor.
     pub calendar: f64,
-    /// State of the market.
+    /// Market whose reputation, yields, economy and surges determine the leads.
     pub market: &'a Market,
     /// Active subscriptions of each group after today's cancellations.
     pub subscribers: &'a ByGroup<u32>,

@@ -275,9 +275,9 @@ pub struct EmailParts {
     pub first_names: Vec<String>,
     /// 48 last names for the local part of an address.
     pub last_names: Vec<String>,
-    /// Company words of the domain (20).
+    /// 20 company words for the domain of an address.
     pub company_domains: Vec<String>,
-    /// Top-level domains (6).
+    /// 6 top-level domains.
     pub domain_suffixes: Vec<String>,
 }
 

@@ -9,7 +9,7 @@ use novamind_base::similar_names;
 /// Fields that contain the name of a list element.
 pub(super) const NAME_FIELDS: [&str; 3] = ["id", "tier", "level"];
 
-/// Returns the name of a list element.
+/// Returns the name of a list element: its `id`, `tier` or `level`, the identifier of its group, or its index.
 pub(super) fn element_name(list: &[Value], at: usize) -> String {
     let text = NAME_FIELDS.iter().find_map(|field| match list.get(at)?.get(field)? {
         Value::String(id) => Some(id.clone()),

@@ -168,7 +168,7 @@ pub fn allocate_resolutions(
     }
 }
 
-/// Results of an update of a block's issues.
+/// Results of updating the issues of one block for a day.
 #[derive(Debug, PartialEq, Eq)]
 pub struct IssueUpdates {
     /// Whether any issue was open at the start of the day.

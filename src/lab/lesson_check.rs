@@ -1,5 +1,5 @@
-//! Checks a lesson on six seeds. The reference play must reach every goal. The pitfall play must miss a goal and trigger
-//! its pitfall. The figures in the texts must be correct.
+//! Check of a lesson on six seeds. The reference play must reach every goal. The pitfall play must miss a goal and
+//! trigger its pitfall. The figures in the texts must be correct.
 
 use std::sync::Arc;
 

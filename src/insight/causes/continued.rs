@@ -43,7 +43,8 @@ pub(super) fn continued_causes(start: &MemorySnapshot, eve: &MemorySnapshot) -> 
 
 impl WeekResimulation {
     /// Returns the contributions of the continuing causes and of the due bills to the change in a figure. The causes
-    /// that differ between the weeks do not explain these contributions. Returns `None` if `progress` stopped the simulations.
+    /// that differ between the weeks do not explain these contributions. Returns `None` if `progress` stopped the
+    /// simulations.
     pub(super) fn continued_contributions(
         &mut self,
         quantity: WeekQuantity,

@@ -6,8 +6,8 @@
 //! in an outcome of bills, for example cancellations, has three parts:
 //!
 //! - the change in the number of bills, at the mean outcome of a bill in the two weeks;
-//! - the change in the open issues of the individuals who are due: individuals are counted by the age of their issue, at
-//!   the mean outcome of each age;
+//! - the change in the open issues of the individuals who are due: individuals are counted by the age of their issue,
+//!   at the mean outcome of each age;
 //! - the change in the outcome of a bill at the same age of the issue, which stays in the residual.
 //!
 //! The parts are computed for each group, so a change in the mix of groups belongs to the number of bills.

@@ -56,11 +56,11 @@
 //! The first days of a week are slower with a database than in memory, because both threads slept before the week. A
 //! company in memory is equally slow if the program sleeps for a second before each week.
 //!
-//! **Lower bound.** A day reads and writes about 104 bytes of each subscriber's columns (usage 21, calls and satisfaction
-//! 65, closing 8, billing days 2, the hash of the facts 8), and a seventh of the 171 bytes of a row for the hash of the
-//! state: 128 bytes. One thread of this machine copies 7 GB/s. A day therefore takes at least 3 ms of one thread with
-//! 165,000 subscribers, and 18 ms with a million. The remaining time is spent on arithmetic, signups, payments and
-//! cancellations, not on passes over columns.
+//! **Lower bound.** A day reads and writes about 104 bytes of each subscriber's columns (usage 21, calls and
+//! satisfaction 65, closing 8, billing days 2, the hash of the facts 8), and a seventh of the 171 bytes of a row for
+//! the state hash: 128 bytes. One thread of this machine copies 7 GB/s. A day therefore takes at least 3 ms of one
+//! thread with 165,000 subscribers, and 18 ms with a million. The remaining time is spent on arithmetic, signups,
+//! payments and cancellations, not on passes over columns.
 //!
 //! **Streams.** Every lead and every bill opens a stream. Opening a single stream takes 180 ns (BLAKE3, then
 //! ChaCha8, each of which is a chain of dependent steps). If eight streams are opened at a time, opening a

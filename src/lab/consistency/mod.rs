@@ -20,7 +20,7 @@ pub use random_draws::PlayEnd;
 /// Difference between the control seed and the tested seed.
 const CONTROL_SEED_OFFSET: u64 = 1_000_003;
 
-/// Which values of two plays are compared.
+/// The rule that selects the values of two plays to compare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ComparedKeys {
     /// Values that both plays have. The plays can have different numbers of values, for example of attempts.
@@ -161,7 +161,7 @@ pub enum ClaimOutcome {
 }
 
 impl ClaimOutcome {
-    /// Returns the label of the outcome in tables.
+    /// Returns the label that tables show for the outcome.
     pub fn label(self) -> &'static str {
         match self {
             ClaimOutcome::Holds => "holds",
@@ -187,7 +187,7 @@ pub struct ClaimResult {
     pub compared_with_other_seed: usize,
     /// Number of values that differ under the control seed.
     pub different_under_other_seed: usize,
-    /// Description of the first difference.
+    /// Key and seed of the first difference; `None` if no value differs.
     pub first_difference: Option<String>,
     /// Outcome of the test.
     pub outcome: ClaimOutcome,
@@ -239,7 +239,7 @@ pub struct ConsistencySpec {
     pub seeds: Vec<u64>,
     /// Name of the scenario; `None` for the scenario of the policies.
     pub scenario: Option<String>,
-    /// Last simulated day. The nominal length of the run does not change.
+    /// Last simulated day; `None` for the last day of the run. The nominal length of the run does not change.
     pub until: Option<u32>,
 }
 
@@ -341,7 +341,7 @@ impl SeedPlays {
     }
 }
 
-/// Counts of the compared and the different values of plays.
+/// Numbers of compared values and of different values in two plays.
 #[derive(Debug, Default)]
 struct Differences {
     compared: usize,

@@ -44,7 +44,7 @@ pub struct PlayDraws {
     pub outages: DrawMap,
     /// Hash of the whole state after the last day.
     pub state: DrawMap,
-    /// Last day, cash, number of leads and number of discovered groups of the play.
+    /// State of the company at the end of the play.
     pub end: PlayEnd,
 }
 

@@ -101,7 +101,7 @@ fn draw_names_are_unique_and_parameters_exist() {
     assert_eq!(names.len(), count);
 }
 
-/// Checks that the sample moments equal the exact moments. The tolerance corresponds to a false alarm rate of
+/// Checks that the sample moments agree with the exact moments. The tolerance corresponds to a false alarm rate of
 /// about 1 in 10,000.
 #[test]
 fn simulator_draws_match_their_distributions() {

@@ -7,7 +7,7 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::random::{Part, Streams};
 
-/// The parameters and random streams with which draws are made.
+/// The parameters and random streams that draws use.
 #[derive(Debug)]
 pub struct DrawContext {
     /// Parameters that determine the distributions.

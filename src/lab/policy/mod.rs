@@ -22,7 +22,7 @@ pub struct Policy {
     pub description: String,
     /// Settings of the run at its start. The command line overrides these settings.
     pub start: PolicyStart,
-    /// The weekly routine of the paper's baseline.
+    /// Settings of the paper's weekly routine; `None` to play without the routine.
     pub rule_based: Option<RuleBased>,
     /// Tool calls on given days.
     pub calls: Vec<ScheduledCall>,
@@ -34,13 +34,13 @@ pub struct Policy {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PolicyStart {
-    /// Cash on day 0, dollars.
+    /// Cash on day 0, dollars; `None` to use the scenario's value.
     pub cash: Option<f64>,
     /// Whether demand surges occur; `None` to use the scenario's value.
     pub surges: Option<bool>,
-    /// Name of the scenario that the run uses.
+    /// Name of the scenario that the run uses; `None` to use the default scenario.
     pub scenario: Option<String>,
-    /// Last day of the run.
+    /// Last day of the run; `None` to use the scenario's value.
     pub days: Option<u32>,
 }
 
@@ -57,9 +57,9 @@ pub struct ScheduledCall {
     pub repeat: u32,
     /// Interval between repetitions in weeks; `None` if the call is not repeated.
     pub every_weeks: Option<u32>,
-    /// Last day of the repetitions, inclusive.
+    /// Last day of the repetitions, inclusive; `None` to repeat the call until the run ends.
     pub until_day: Option<u32>,
-    /// Whether a rejection of the call is ignored instead of stopping the run.
+    /// Whether the run continues if the call is rejected.
     pub may_fail: bool,
 }
 

@@ -23,7 +23,7 @@ pub struct Term {
     pub topic: String,
     /// Display name of the term.
     pub title: String,
-    /// Synonyms of the term.
+    /// Synonyms under which the term can also be found.
     #[serde(default)]
     pub aka: Vec<String>,
     /// Definition of the term in one sentence.

@@ -48,7 +48,7 @@ struct PastForecast {
 pub struct StageResult {
     /// Number of companies with forecasts.
     pub companies: usize,
-    /// Number of forecasts.
+    /// Number of forecasts whose outcome is known.
     pub forecasts: usize,
     /// Mean absolute error, as a share of income and costs until the horizon.
     pub mean_error: f64,

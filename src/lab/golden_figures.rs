@@ -157,7 +157,7 @@ fn read_table<const WIDTH: usize>(
 /// A compared cell: one figure of a group on a checkpoint day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparedCell {
-    /// Name of the figure.
+    /// Name of the figure, as listed in docs/interfaces/golden.md#figures.
     pub figure: String,
     /// Group of the figure; empty for the whole company.
     pub group: String,

@@ -136,7 +136,7 @@ pub enum RunError {
         seed: u64,
         /// Decision day of the rejected call.
         day: u32,
-        /// Name of the rejected tool.
+        /// Name of the tool that rejected the call.
         tool: String,
         /// Reason for the rejection.
         rejection: Box<Rejection>,

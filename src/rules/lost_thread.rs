@@ -31,7 +31,7 @@ const MAX_STATEMENTS: usize = 2;
 /// The subscription of an enterprise when its thread ended.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Subscription {
-    /// `lead`, `subscribed`, `cancelled` or `lost`.
+    /// Status of the subscription: `lead`, `subscribed`, `cancelled` or `lost`.
     pub status: String,
     /// Plan of the subscription; `None` if the enterprise never subscribed.
     pub plan: Option<Plan>,

@@ -34,7 +34,7 @@ pub enum NotebookChange {
     Store {
         /// Section that stores the code.
         section: NotebookSection,
-        /// Name of the code.
+        /// Name under which the code is stored.
         name: String,
         /// SQL statements or Python code.
         code: String,

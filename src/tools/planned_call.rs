@@ -12,7 +12,7 @@ use novamind_world::settings::SettingsChange;
 pub struct PlannedCall<A> {
     /// Command that the simulator executes.
     pub command: Command,
-    /// Change to the notebook.
+    /// Change to the notebook; `None` if the call leaves the notebook unchanged.
     pub notebook_change: Option<NotebookChange>,
     /// Settings row for the database, if it differs from the settings of the simulator.
     pub settings_row: Option<Value>,

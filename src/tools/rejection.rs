@@ -7,7 +7,7 @@ use serde::Serialize;
 /// The rejection of a tool call. A rejected call changes nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Rejection {
-    /// Rejection code for programs.
+    /// Code that programs can test, for example `wrong_type`.
     pub code: &'static str,
     /// Message that explains the error and names the valid values.
     pub message: String,

@@ -60,9 +60,9 @@ pub(crate) struct RejectedCall {
     pub seq: Option<u64>,
     /// Decision day of the call.
     pub day: u32,
-    /// Tool of the rejected call.
+    /// Tool that rejects the call.
     pub tool: ToolId,
-    /// Why the call was rejected.
+    /// Reason for the rejection.
     pub rejection: Rejection,
 }
 

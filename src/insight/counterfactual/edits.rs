@@ -76,7 +76,7 @@ pub(crate) struct AddedCall {
 pub(crate) struct AddedSetting {
     /// Decision day; the change is applied after the recorded calls of that day.
     pub day: u32,
-    /// Full key of the parameter.
+    /// Full key of the parameter, for example `demand_surge.probability`.
     pub key: String,
     /// New value of the parameter.
     pub value: Value,

@@ -49,7 +49,7 @@ pub enum RecordedDecision {
         seq: u64,
         /// Decision day of the change.
         day: u32,
-        /// Full key of the parameter.
+        /// Full key of the parameter, for example `demand_surge.probability`.
         key: String,
         /// New value of the parameter.
         value: Value,

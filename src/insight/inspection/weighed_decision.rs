@@ -16,7 +16,7 @@ pub struct RenewalPlanTerms {
     /// Terms of the perceived quality.
     #[serde(flatten)]
     pub experience: QualityTerms,
-    /// Perceived quality of the plan.
+    /// Perceived quality of the plan, computed from the terms in `experience`.
     pub quality: f64,
     /// Required quality at the plan's price.
     pub required: f64,

@@ -37,7 +37,7 @@ pub enum DecisionEdit {
     Drop(u64),
     /// Changes the arguments of the call in the given line.
     Change {
-        /// Line of the edited call.
+        /// Line of the edited call in the record of the run.
         seq: u64,
         /// New arguments of the call.
         args: Value,
@@ -55,7 +55,7 @@ pub enum DecisionEdit {
     Set {
         /// Week, counted from 1, at the start of which the parameter is set; `None` for the first week of the what-if.
         week: Option<u32>,
-        /// Full key of the parameter.
+        /// Full key of the parameter, for example `demand_surge.probability`.
         key: String,
         /// New value of the parameter.
         value: Value,

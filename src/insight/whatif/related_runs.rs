@@ -30,7 +30,7 @@ pub struct RelatedRun {
 pub struct BranchOrigin {
     /// ID of the parent run.
     pub run: String,
-    /// First week of the branch.
+    /// First week of the branch, counted from 1.
     pub week: u32,
     /// First decision that only the branch or only its parent made; `None` if there is no such decision or the parent
     /// cannot be read.

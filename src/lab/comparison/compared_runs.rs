@@ -14,7 +14,7 @@ pub struct ComparisonRow {
     pub figure: String,
     /// Group, horizon in days, or day of the row; empty for a figure of the whole run.
     pub of: String,
-    /// Unit of the values.
+    /// Unit of the values, for example `dollars` or `share`.
     pub unit: &'static str,
     /// Values in the order of the runs; `None` if a run has no value.
     pub values: Vec<Option<f64>>,
@@ -60,7 +60,7 @@ pub struct Comparison {
     pub participants: Vec<Option<String>>,
     /// Scenario of each run.
     pub scenarios: Vec<String>,
-    /// Generation of the released simulator whose rules each run has.
+    /// Generation of the released simulator whose rules each run uses.
     pub generations: Vec<Interface>,
     /// Last day of each run, and the rule that derived the last day.
     pub horizons: Vec<(u32, HorizonRule)>,

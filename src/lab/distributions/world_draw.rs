@@ -65,7 +65,7 @@ impl DrawFamily {
 /// A random draw of the simulator.
 #[derive(Debug)]
 pub struct WorldDraw {
-    /// Name of the draw.
+    /// Unique name of the draw, for example `post_clock`.
     pub name: &'static str,
     /// Description of the draw, with its unit.
     pub description: &'static str,

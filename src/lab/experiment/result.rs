@@ -96,7 +96,7 @@ pub struct DayPoint {
 pub struct FigurePoint {
     /// Day of the value.
     pub day: u32,
-    /// Name of the figure.
+    /// Name of the figure, as listed in docs/interfaces/golden.md#figures.
     pub figure: String,
     /// Breakdown of the figure, for example a group; empty for a total.
     pub group: String,

@@ -20,11 +20,11 @@ pub const DEFAULT_WIDTH: usize = 100;
 /// The report of a laboratory command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LabReport {
-    /// Title of the report.
+    /// Title of the report, which precedes the tables.
     pub title: String,
     /// Tables of the report; the first table contains the main result.
     pub tables: Vec<LabTable>,
-    /// Graphs of the report.
+    /// Graphs of the report, shown below the tables.
     pub graphs: Vec<Graph>,
     /// Notes below the tables: assumptions, definitions and sources.
     pub notes: Vec<String>,
@@ -37,7 +37,7 @@ pub struct LabTable {
     pub name: String,
     /// Caption of the table; can be empty.
     pub caption: String,
-    /// Columns of the table.
+    /// Columns of the table, from left to right.
     pub columns: Vec<Column>,
     /// Cells of each row, one per column.
     pub rows: Vec<Vec<CellValue>>,

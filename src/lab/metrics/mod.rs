@@ -14,7 +14,7 @@ use novamind_world::market::economy::Dimension;
 pub struct MetricValue {
     /// Day of the value.
     pub day: u32,
-    /// Name of the figure.
+    /// Name of the figure, as listed in docs/interfaces/golden.md#figures.
     pub figure: &'static str,
     /// Breakdown of the figure, for example a group; empty for a total.
     pub group: &'static str,

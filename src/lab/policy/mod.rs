@@ -16,9 +16,9 @@ use novamind_world::params::ParameterSource;
 /// A policy: a program that plays a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Policy {
-    /// Name of the policy.
+    /// Name that the policy file gives, as one line of text.
     pub name: String,
-    /// Description of the policy.
+    /// Description that the policy file gives; can be empty.
     pub description: String,
     /// Settings of the run at its start. The command line overrides these settings.
     pub start: PolicyStart,
@@ -26,7 +26,7 @@ pub struct Policy {
     pub rule_based: Option<RuleBased>,
     /// Tool calls on given days.
     pub calls: Vec<ScheduledCall>,
-    /// Rule that answers enterprises.
+    /// Rule that answers enterprises; `None` if the policy file has no section `[enterprise]`.
     pub enterprise: Option<EnterpriseRule>,
 }
 
@@ -49,11 +49,11 @@ pub struct PolicyStart {
 pub struct ScheduledCall {
     /// First decision day of the call.
     pub day: u32,
-    /// Name of the called tool.
+    /// Name of the called tool, which must not be a tool that advances time.
     pub tool: String,
     /// Arguments of the call. Symbols are resolved at the time of the call.
     pub arguments: serde_json::Value,
-    /// Number of calls on each day.
+    /// Number of calls on each of the days, at least 1.
     pub repeat: u32,
     /// Interval between repetitions in weeks; `None` if the call is not repeated.
     pub every_weeks: Option<u32>,
@@ -112,9 +112,9 @@ fn default_repeat() -> u32 {
 /// An error in a policy file, with its location.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PolicyError {
-    /// Name of the policy file.
+    /// Path of the policy file, or the requested name if no file was found.
     pub source: String,
-    /// Line of the error, if known.
+    /// Line of the error in the file, from 1; `None` if the line is unknown.
     pub line: Option<usize>,
     /// Description of the error.
     pub problem: String,

@@ -31,7 +31,7 @@ pub use attempts::{AttemptResult, attempts_report};
 /// The result of a finished run with a score.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FinishedRun {
-    /// Name of the run.
+    /// Name of the run; empty for the idle company.
     pub run: String,
     /// Label of the participant, if any.
     pub participant: Option<String>,

@@ -32,7 +32,7 @@ impl ElementOutcome {
 pub struct ElementFailure {
     /// Customer number; `None` if the element contains no valid number.
     customer: Option<i64>,
-    /// Error text for the result.
+    /// Reason that the result of the call states for the element.
     error: String,
     /// Rejection of the whole call, used if no element is sent.
     refusal: Box<Rejection>,

@@ -7,7 +7,7 @@ use super::lexicon::Lexicon;
 /// A claim that a post makes, with the verdict of one group of readers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Claim {
-    /// Name of the claim.
+    /// Name of the claim, one of `CLAIM_NAMES`.
     pub name: &'static str,
     /// Whether the claim is true, or `None` if the readers do not know.
     pub verdict: Option<bool>,

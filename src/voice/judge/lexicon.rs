@@ -113,13 +113,13 @@ words! {
     absolutes,
     /// Advertising words.
     buzzwords,
-    /// Casual words.
+    /// Casual words, such as slang and abbreviations.
     slang,
-    /// Engineering terms.
+    /// Terms from engineering, such as `api` and `latency`.
     tech,
-    /// Words for completed actions.
+    /// Words for actions, such as `fixed` and `launched`.
     actions,
-    /// Words for points in time.
+    /// Words for points and periods in time, such as `today` and `week`.
     times,
     /// Words of an apology.
     apology,
@@ -139,7 +139,7 @@ words! {
     negative,
     /// Words that address the reader.
     you,
-    /// Function words.
+    /// Function words, such as articles and prepositions.
     function,
 }
 

@@ -99,7 +99,7 @@ pub enum Condition {
     Compared(Quantity, ComparisonOperator, f64),
     /// A change in a figure compared with the day before.
     Changed(Quantity, Direction),
-    /// True on days on which the event occurs.
+    /// An event. The condition is true on days on which the event occurs.
     Event(WorldEvent),
 }
 

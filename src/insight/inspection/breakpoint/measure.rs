@@ -7,7 +7,7 @@ use novamind_record::figures::GroupFigures;
 use novamind_record::figures::churn;
 use novamind_world::identifiers::Group;
 
-/// How a figure relates to time.
+/// The relation of a figure to time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeasureKind {
     /// The value at the end of a day.

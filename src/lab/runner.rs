@@ -94,7 +94,7 @@ pub struct PolicyRunOutcome {
     pub state_hash: String,
     /// Whether demand surges are possible.
     pub surges: bool,
-    /// Name of the saved run, if any.
+    /// Name of the saved run; `None` if the run was not saved.
     pub run: Option<String>,
     /// Time that it took to play the run, seconds.
     pub seconds: f64,

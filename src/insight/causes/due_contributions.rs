@@ -22,8 +22,8 @@ use novamind_record::figures::{SimulatedWeek, WeekFigure};
 use novamind_world::events::Category;
 use novamind_world::identifiers::Group;
 
-/// Returns the contributions of the due bills to the change between two weeks without the other causes. The list is
-/// empty for figures that do not depend on bills.
+/// Returns the contributions of the due bills to the change between two weeks that were simulated without the other
+/// causes. The list is empty for figures that do not depend on bills.
 pub(super) fn due_contributions(quantity: WeekQuantity, weeks: &TwoWeeks) -> Vec<CauseContribution> {
     let individuals: Vec<Group> = Group::all()
         .filter(|group| !group.is_enterprise() && quantity.group().is_none_or(|only| only == *group))

@@ -4,10 +4,10 @@
 //! world inputs that the company does not control. The contribution of a cause is its Shapley value. World inputs are
 //! evaluated without the player's changes. The player's changes are evaluated with the recorded world inputs. The
 //! contribution of a single change is therefore exactly the difference from a branch without the change. Settings and
-//! market changes that continue from the previous week are causes as well (`continued.rs`). So are the bills that are
-//! due when the two weeks are simulated without these causes, because different customers have their billing day in
-//! each week (`due_contributions.rs`). In the residual, the same bills have different outcomes: customers differ, and
-//! every day has new random draws.
+//! market changes that continue from the previous week are causes as well (`continued.rs`). The bills that are due are
+//! also causes, because different customers have their billing day in each week. The contributions of these bills are
+//! computed from simulations of the two weeks without the other causes (`due_contributions.rs`). In the residual, the
+//! same bills have different outcomes: customers differ, and every day has new random draws.
 
 mod attribution;
 mod cause;

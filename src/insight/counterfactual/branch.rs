@@ -227,8 +227,8 @@ impl<'a> BranchSimulation<'a> {
         self.simulate_days(until, progress)
     }
 
-    /// Executes a recorded call with its changed arguments, if any. Skips a dropped call. For a call that the run
-    /// rejected, only records whether the branch would accept it.
+    /// Executes a recorded call, with changed arguments if an edit changes them. Skips a dropped call. If the run
+    /// rejected the call and no edit changes it, only records whether the branch would accept it.
     fn replay_call(&mut self, call: &RecordedCall) {
         if self.edits.dropped_lines.contains(&call.seq) {
             return;
@@ -270,7 +270,7 @@ impl<'a> BranchSimulation<'a> {
         Ok(planned.command)
     }
 
-    /// Executes a call and records its rejection, if any.
+    /// Executes a call. If the call is rejected, records the rejection.
     fn apply_call(&mut self, seq: Option<u64>, tool: ToolId, args: &Value, is_new: bool) {
         let RenumberedCall { args: here, missing_customers: absent } = self.renumber_call(tool, args);
         let is_renumbered = here.as_ref().is_some_and(|here| here != args);

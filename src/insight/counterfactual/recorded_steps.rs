@@ -33,8 +33,8 @@ pub struct RecordedCall {
     pub args: Value,
     /// Whether the run accepted the call.
     pub accepted: bool,
-    /// The call that this call undid or redid, if any. An edit of that call does not change the settings that this
-    /// call restored.
+    /// The call that this call undid or redid; `None` for other calls. An edit of that call does not change the
+    /// settings that this call restored.
     pub reversal: Option<Reversal>,
 }
 
@@ -146,8 +146,8 @@ pub(crate) fn steps_from_lines(lines: &[Line]) -> Vec<RecordedStep> {
     lines.iter().filter_map(|line| step_from_line(line, &mut scores)).collect()
 }
 
-/// Returns the step that an event records, if any. Collects scores in `scores` until the event of the simulated days to
-/// which the scores apply.
+/// Returns the step that an event records, or `None` if the event records no step. Collects scores in `scores` until
+/// the event that records the days to which the scores apply.
 fn step_from_line(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<RecordedStep> {
     if let Some(closing) = line.record.closed_days() {
         let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());

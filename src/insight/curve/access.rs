@@ -74,8 +74,8 @@ impl CurveExplorer {
         Ok(CurveExplorer::from_markets(group, basis, offer, markets))
     }
 
-    /// Returns the curve explorer for the estimates of market studies without the points of the curve, for texts that
-    /// contain only the expected decisions of leads.
+    /// Returns the curve explorer for the estimates of market studies, but does not compute the points of the curve. The
+    /// expected decisions of leads do not need them.
     ///
     /// # Errors
     /// `group_not_discovered`, `guess_first`.

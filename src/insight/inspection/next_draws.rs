@@ -123,9 +123,9 @@ pub enum DrawEffect {
         /// Quality gain of the R&D project.
         gain: f64,
     },
-    /// Group that market research would discover, if any.
+    /// Group that market research would discover; `None` if it would discover no group.
     Found(Option<Group>),
-    /// Demand surge that starts on the day, if any.
+    /// Demand surge that starts on the day; `None` if no surge starts.
     Surge(Option<Surge>),
     /// Change in the economy index.
     Index {

@@ -117,7 +117,7 @@ pub struct ReputationEquation {
     pub day: u32,
     /// Reputation at the start of the day.
     pub before: f64,
-    /// Effect of cancellations of individuals without an acceptable plan.
+    /// Effect of cancellations by individuals who had no acceptable plan.
     pub individual_departures: CancellationEffect,
     /// Effect of lost enterprises.
     pub enterprise_departures: CancellationEffect,

@@ -66,7 +66,7 @@ pub struct WhatIf {
     visibility: InputVisibility,
     /// Whether the inspection is recorded, so that hidden figures may be shown.
     shows_hidden: bool,
-    /// Progress in the unfinished lesson of the run, if any.
+    /// Progress in the unfinished lesson of the run; `None` if the run has no unfinished lesson.
     lesson: Option<LessonProgress>,
     /// Whether the lesson of the run changes the capacity automatically. If so, the branches also change the capacity
     /// automatically.
@@ -468,8 +468,8 @@ impl BranchPoint {
         Some(week)
     }
 
-    /// Returns the last day on which a call names a customer who arrived after the start of the branches. The number
-    /// of such a customer differs in a branch with more or fewer customers.
+    /// Returns the last day on which a call names a customer who arrived after the start of the branches. In a branch
+    /// with more or fewer customers, such a customer has another number.
     fn last_day_naming_new_customers(&self, edits: &[Edits]) -> Option<u32> {
         let first_new = self.start.world.customers.next_customer;
         let is_met = |tool, args| highest_customer(tool, args) >= Some(first_new);

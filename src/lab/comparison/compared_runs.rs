@@ -18,7 +18,7 @@ pub struct ComparisonRow {
     pub unit: &'static str,
     /// Values in the order of the runs; `None` if a run has no value.
     pub values: Vec<Option<f64>>,
-    /// Range of the published values, if any.
+    /// Range of the published values; `None` if no values are published.
     pub published: Option<PublishedRange>,
 }
 

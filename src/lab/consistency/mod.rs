@@ -200,7 +200,7 @@ pub struct ConsistencyCheck {
     pub policies: [String; 2],
     /// Results of both policies on the first seed.
     pub ends: [PlayEnd; 2],
-    /// Whether both policies ended in the same state on every seed, in which case nothing was tested.
+    /// Whether both policies ended in the same state on every seed. If so, nothing was tested.
     pub ends_in_same_state: bool,
     /// Whether one policy switches demand surges off but was played with demand surges.
     pub equalizes_surges: bool,
@@ -251,7 +251,7 @@ impl ConsistencySpec {
         (one.start.surges != other.start.surges).then_some(true)
     }
 
-    /// Returns the reason why two policies cannot be compared, if any.
+    /// Returns the reason why two policies cannot be compared, or `None` if they can be compared.
     pub fn incomparability_reason(&self, policies: &[Policy; 2]) -> Option<&'static str> {
         let [one, other] = policies.each_ref().map(|policy| &policy.start);
         match self.scenario {

@@ -33,9 +33,9 @@ pub use attempts::{AttemptResult, attempts_report};
 pub struct FinishedRun {
     /// Name of the run; empty for the idle company.
     pub run: String,
-    /// Label of the participant, if any.
+    /// Label of the participant; `None` if the run has no label.
     pub participant: Option<String>,
-    /// Name of the policy that played, if any.
+    /// Name of the policy that played the run; `None` if no policy played.
     pub policy: Option<String>,
     /// Seed of the run.
     pub seed: u64,

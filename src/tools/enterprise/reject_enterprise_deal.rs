@@ -10,7 +10,7 @@ use super::parsing::{ElementError, malformed_element, parse_deal_customer, parse
 use super::{ElementFailure, ElementOutcome, RESULT_FIELDS, reject_if_all_failed};
 use novamind_world::command::Command;
 
-/// The tool `reject_enterprise_deal`, which ends open threads of enterprises without a deal.
+/// The tool `reject_enterprise_deal`, which ends open threads with enterprises although no deal was made.
 pub struct RejectEnterpriseDeal;
 
 /// A thread that the call ends.

@@ -1,8 +1,8 @@
-//! Instructions for an agent: a page that describes goal, rules and requests, and the documentation of tools and tables.
+//! Instructions for an agent: a page that describes the goal, the rules and the requests, and the documentation of
+//! tools and tables.
 //!
-//! The instructions are generated from the catalog and the current parameters. The page contains the same
-//! information as the instructions of the benchmark. It contains no hidden state and no advice on how to play
-//! well.
+//! The instructions are generated from the catalog and the current parameters. The page contains the same information
+//! as the instructions of the benchmark. It contains no hidden state and no advice on how to play well.
 
 use std::path::Path;
 
@@ -33,7 +33,7 @@ pub struct PageContext<'a> {
     pub days: u32,
     /// Cash on day 0, in dollars.
     pub cash: f64,
-    /// Current parameters of the run.
+    /// Parameter values that are inserted into the texts.
     pub numbers: &'a ParameterNumbers,
 }
 
@@ -53,7 +53,8 @@ pub fn agent_page(of: &PageContext<'_>) -> String {
     parts.iter().fold(filled, |text, (name, value)| text.replace(name, value))
 }
 
-/// Returns the goal, the calendar and the rules from the page, for clients that receive the tools separately.
+/// Returns the goal, the calendar and the rules from the page, for clients that receive the descriptions of the tools
+/// separately.
 pub fn goal_and_rules(of: &PageContext<'_>) -> String {
     let whole = agent_page(of);
     whole.split_once(HOW_TO_CALL).map_or(whole.as_str(), |(before, _)| before).trim_end().to_owned()

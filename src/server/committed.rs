@@ -1,4 +1,4 @@
-//! The state after the last executed request, which a server of release 2 reports even while a week is simulated.
+//! The state after the last executed request. A server of release 2 reports this state even while a week is simulated.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -51,7 +51,8 @@ impl CommittedState {
         self.access(|state| state.running = Some(id.to_owned()));
     }
 
-    /// Replaces the state after a request. `session` is `None` after an internal error, which keeps the earlier state.
+    /// Replaces the state after a request. Keeps the earlier state if `session` is `None`, which it is after an
+    /// internal error.
     pub fn commit(&self, session: Option<&Session>) {
         self.access(|state| match session {
             Some(session) => state.update(session),

@@ -13,7 +13,7 @@ use novamind_tools::{ToolId, find};
 /// Maximum size of a file in an archive, in bytes. A transcript of 500 days has a few megabytes.
 const MAX_FILE_BYTES: u64 = 512 << 20;
 
-/// The tool calls in an external transcript that name tools of this program, with the settings of the run.
+/// The calls of this program's tools in an external transcript, with the settings of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForeignTranscript {
     /// Name of the player, if the transcript contains a name.
@@ -50,10 +50,10 @@ pub struct ForeignCall {
 pub struct PlayedTranscript {
     /// Number of executed calls, including weeks and statements.
     pub call_count: usize,
-    /// Position, tool and result of each call that has a different result in the transcript or that follows
-    /// the end of the run.
+    /// Position, tool and reason of each call whose result differs from the transcript, or that follows the end of the
+    /// run.
     pub mismatches: Vec<(usize, String, String)>,
-    /// Number of accepted Python programs, which are not executed.
+    /// Number of calls that were not run because they contain a Python program.
     pub not_run: usize,
 }
 
@@ -80,7 +80,8 @@ impl ForeignTranscript {
         }
     }
 
-    /// Plays the calls in a run. Python programs in the calls are not executed. `progress` is called for each tool call.
+    /// Plays the calls in a run. Does not execute Python programs in the calls. `progress` is called after each tool
+    /// call.
     pub fn play(&self, session: &mut Session, progress: &mut dyn FnMut(usize)) -> PlayedTranscript {
         let mut played = PlayedTranscript::default();
         session.disable_python();
@@ -110,7 +111,7 @@ impl ForeignTranscript {
     }
 }
 
-/// Finds a tool by the name that a client recorded. Some clients prefix the name of the tool with the name of the server.
+/// Finds a tool by the name that a client recorded. Some clients add the name of the server as a prefix.
 pub(super) fn tool_name(name: &str) -> Option<&'static str> {
     let bare = name.rsplit(['.', '/', ':']).next().unwrap_or(name);
     let bare = bare.rsplit_once("__").map_or(bare, |(_, bare)| bare);

@@ -60,7 +60,7 @@ impl<'a> ZipArchive<'a> {
         Some(ZipArchive { bytes, entries })
     }
 
-    /// Returns the file names in the order of the directory.
+    /// Returns the file names in the order of the archive's directory.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.entries.iter().map(|entry| entry.name.as_str())
     }
@@ -106,7 +106,7 @@ impl<'a> ZipArchive<'a> {
 }
 
 impl Entry {
-    /// Reads an entry of the directory. Also returns the offset of the next entry.
+    /// Reads an entry of the directory. Returns the entry, and the offset at which the next entry starts.
     fn read(bytes: &[u8], at: usize) -> Option<(Entry, usize)> {
         if !starts_with(bytes, at, ENTRY_SIGNATURE) {
             return None;

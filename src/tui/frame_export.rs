@@ -71,7 +71,8 @@ fn draw_row(out: &mut String, buffer: &Buffer, y: u16, paper: TerminalColors) {
     }
 }
 
-/// Draws consecutive cells of a row that have the same style: their background, characters drawn as paths, and text.
+/// Draws consecutive cells of a row that have the same style: first the background, then characters that are drawn as
+/// paths, then text.
 fn draw_cell_run(out: &mut String, (x, y): (usize, u16), cells: &[&Cell], paper: TerminalColors) {
     let (ink, ground) = cell_colors(cells[0], paper);
     let place = |column: usize| MARGIN + (x + column) as f64 * CELL_WIDTH;
@@ -124,7 +125,7 @@ fn write_word(out: &mut String, (left, top): (f64, f64), word: &str, (ink, modif
     );
 }
 
-/// Returns the foreground color of a cell, and the background color if the cell does not have the default background.
+/// Returns the foreground color of a cell, and its background color unless this is the default background.
 fn cell_colors(cell: &Cell, paper: TerminalColors) -> (String, Option<String>) {
     let ink = css_color(cell.fg).unwrap_or_else(|| paper.foreground.to_owned());
     let ground = css_color(cell.bg);

@@ -31,7 +31,7 @@ pub enum Message {
     RedrawDue,
 }
 
-/// A new position of the playback, or a problem.
+/// A new position of the playback, a problem, or both.
 pub struct PlaybackUpdate {
     /// Company at the position; `None` if the company is unchanged.
     pub company: Option<Arc<DisplayedCompany>>,
@@ -41,7 +41,7 @@ pub struct PlaybackUpdate {
     pub problem: Option<String>,
 }
 
-/// An alternative that is offered if a run cannot be opened.
+/// What the user can do instead if a run cannot be opened.
 #[derive(Debug, Clone, PartialEq)]
 pub enum OpenFallback {
     /// The run with this id is open in another program and can be watched.
@@ -57,11 +57,11 @@ pub enum OpenFallback {
 pub struct SimulatedDay {
     /// Cash at the end of the day, in dollars.
     pub cash: f64,
-    /// Active individual subscriptions at the end of the day.
+    /// Number of individuals with an active subscription at the end of the day.
     pub subscribers: u32,
 }
 
-/// An answer or progress that is sent to the page that asked.
+/// An answer, or its progress, for the page that asked.
 pub struct Delivery {
     pub(super) store: Box<dyn FnOnce() + Send>,
     /// Whether the delivery is the answer (true) or progress (false).
@@ -88,7 +88,7 @@ pub struct DebugRunResult {
 pub enum Response {
     /// The runs in the runs folder. If the request was to end or delete a run, also a message about the outcome.
     Runs(Option<Result<String, String>>, Result<Vec<RunSummary>, String>),
-    /// A class was read for display.
+    /// A class was read for display, or reading failed.
     ClassRead(Box<Result<(CollectedClass, ClassDisplayOptions), String>>),
     /// A handout was opened. The runs folder is now the folder of the student with this label.
     HandoutOpened(String),
@@ -110,7 +110,7 @@ pub enum Response {
     ClockStopped,
     /// Drafts of the opened run that were saved before the program stopped.
     Drafts(Box<DraftTexts>),
-    /// A run could not be opened or created. Contains the error message and an alternative.
+    /// A run could not be opened or created. Contains the error message and what the user can do instead.
     NotOpened(String, Option<OpenFallback>),
     /// A tool call was executed or rejected.
     ToolCalled(ToolId, Result<Box<Answer>, Rejection>, Arc<DisplayedCompany>),

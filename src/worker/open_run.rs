@@ -94,7 +94,7 @@ impl OpenRun<'_> {
     }
 }
 
-/// Returns a function that reports simulated days. Reports have a minimum interval.
+/// Returns a function that reports a simulated day to the console, at most once per [`DAY_REPORT_INTERVAL`].
 pub(super) fn day_reporter(news: &Sender<Message>) -> impl FnMut(&DayReport<'_>) + use<> {
     let (news, mut instant) = (news.clone(), Instant::now());
     move |report| {

@@ -112,7 +112,7 @@ impl SessionThread {
         Ok(playback)
     }
 
-    /// Reports a replayed day, with a minimum interval between reports.
+    /// Reports a replayed day, at most once per [`DAY_REPORT_INTERVAL`].
     fn report_day(&self, instant: &mut Instant, day: u32) -> ControlFlow<()> {
         if instant.elapsed() >= DAY_REPORT_INTERVAL {
             *instant = Instant::now();
@@ -168,7 +168,7 @@ impl SessionThread {
     }
 }
 
-/// Returns the company at a position. Notes that were written later are excluded.
+/// Returns the company at a position of a playback. Notes that were written after this position are excluded.
 fn playback_company(playback: &Playback, before: Option<&DisplayedCompany>) -> DisplayedCompany {
     let memo = playback.notes().unwrap_or_default();
     let can_inspect = playback.can_inspect();

@@ -1,4 +1,4 @@
-//! Posts of the social feed for the screens. After the first reading, only new posts are read.
+//! Posts of the social feed for the screens. After the first call, only new posts are read.
 
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ impl PostKind {
 pub struct Post {
     /// Kind of the author.
     pub kind: PostKind,
-    /// Number of the post, counted separately for the player's posts and for other posts.
+    /// Number of the post. The player's posts and other posts are numbered separately.
     pub number: u32,
     /// Day on which the post was published.
     pub day: u32,
@@ -60,7 +60,7 @@ pub struct Post {
     pub answered_post: Option<u32>,
     /// Number of views of the player's post; 0 for other posts.
     pub views: u32,
-    /// Number of comments on the player's post.
+    /// Number of comments on the player's post; 0 for other posts.
     pub comments: u32,
 }
 
@@ -94,7 +94,7 @@ impl Post {
 /// Posts of other authors, newest first. Successive readings share unchanged posts.
 pub type Posts = Arc<Vec<Arc<Post>>>;
 
-/// Initial limit on the number of new posts to read. It is usually higher than the number of posts in a week.
+/// Initial limit on the number of new posts to read, usually more than are published in a week.
 const INITIAL_POSTS: usize = 64;
 
 /// Reads the posts of other authors. If some posts are known, requests only newer posts.
@@ -125,8 +125,8 @@ pub fn read_posts(session: &Session, known: Option<&Posts>) -> Posts {
 
 fn kind_and_name(author: &PostAuthor, is_comment: bool) -> (PostKind, String) {
     let group = author.group_id.map_or("–", Group::id);
-    // Press posts have the first group as author group and no persona. Posts of customers in discovered groups have no
-    // persona either.
+    // Press posts have the first group as the author's group, and no persona. Posts of customers in discovered groups
+    // also have no persona.
     let is_press = author.group_id.is_some() && author.group_id == Group::at(0);
     match (is_comment, author.persona_name.as_deref()) {
         (true, name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("someone"))),

@@ -62,9 +62,9 @@ pub enum Request {
     Redo,
     /// Submit the week and simulate it.
     Advance {
-        /// Rationale of the week.
+        /// Rationale that the user entered for the week.
         rationale: String,
-        /// Forecasts of cash for all horizons.
+        /// Forecasts of cash for all horizons, in dollars.
         forecasts: Forecasts,
     },
     /// Simulate at most this number of days of a debug run, up to the next breakpoint.
@@ -141,7 +141,7 @@ pub struct GivenAnswer {
     pub changes: u32,
 }
 
-/// The source of a recorded run.
+/// Where a recorded run is stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RecordSource {
     /// The run with this id in the runs folder.
@@ -172,7 +172,7 @@ impl Request {
         of_lesson || matches!(self, Request::Call { .. } | Request::Undo | Request::Redo)
     }
 
-    /// Returns whether the request is forbidden for participants of a study, because it affects more than their current
+    /// Returns whether participants of a study may not send the request, because it affects more than their current
     /// run.
     pub fn is_forbidden_for_participants(&self) -> bool {
         match self {

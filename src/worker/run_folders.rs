@@ -18,7 +18,7 @@ use novamind_rules::calls_for_waiting_threads;
 use novamind_session::{Access, NewRun, SealKey, Session, Storage, abandon_run, recover};
 use novamind_tools::Rejection;
 
-/// A question that asks for the preview of a run.
+/// A question for the preview of a run in the run list.
 #[derive(Debug, Clone)]
 pub struct PreviewQuestion {
     /// ID of the run to preview.
@@ -113,8 +113,8 @@ impl SessionThread {
         self.show_opened_run(opened, id, None);
     }
 
-    /// Rejects playing a run of a participant: only the participant may continue the run, under the protocol of the
-    /// study.
+    /// Rejects playing a run that belongs to a participant: only the participant may continue it, under the study's
+    /// protocol.
     fn reject_study_session(&self, folder: &Path, access: Access) -> Result<(), RunError> {
         let is_elsewhere = folder.parent() != Some(self.runs_folder.as_path());
         if self.lists_all_participants && access == Access::Write && is_elsewhere {

@@ -28,7 +28,7 @@ pub struct Class {
     pub program: String,
     /// Name of the class: eight hexadecimal digits.
     pub class: String,
-    /// Time at which the class was created, RFC 3339.
+    /// Time at which the class was created, in RFC 3339 format.
     pub created: String,
     /// The lesson of the class; `None` if a run was handed out.
     pub lesson: Option<ClassLesson>,
@@ -67,11 +67,11 @@ pub struct ClassStudent {
     pub label: String,
     /// Name of the run that the handout creates.
     pub run: String,
-    /// Seal of the handout.
+    /// Seal of the original handout, from which changes of the file are detected.
     pub seal: String,
 }
 
-/// The lesson or run that the instructor hands out to a new class.
+/// What the instructor hands out to a new class.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HandoutSource {
     /// A lesson that every student starts from the beginning.
@@ -185,8 +185,7 @@ impl Class {
         self.students.iter().find(|student| student.label == label)
     }
 
-    /// Returns the labels of students whose handout file in the folder differs from the original. Missing handouts are
-    /// not listed.
+    /// Returns the labels of students whose handout file no longer has the original content. Ignores missing handouts.
     pub(super) fn altered_handouts(&self, folder: &Path) -> Vec<String> {
         let is_altered = |student: &&ClassStudent| {
             let path = folder.join(format!("{}{HANDOUT_EXTENSION}", student.label));

@@ -31,13 +31,13 @@ pub struct ClassCollection {
     pub references: Vec<ClassReference>,
     /// Problems to report to the instructor.
     pub findings: Vec<ClassFinding>,
-    /// Number of records that are duplicates or earlier states of a collected run and therefore do not count.
+    /// Number of records that do not count, because they are duplicates or earlier states of a collected run.
     pub superseded: u32,
-    /// Number of runs in the searched folders that do not belong to the class.
+    /// Number of runs in the searched folders that belong to no student of the class.
     pub others: u32,
 }
 
-/// The input of a collection.
+/// The class to collect, and the places to search.
 pub struct CollectionInput<'a> {
     /// The class whose submissions are collected.
     pub class: &'a Class,
@@ -144,7 +144,7 @@ struct CollectionBuilder<'a> {
 }
 
 impl CollectionBuilder<'_> {
-    /// Returns the label that a path contains as the name of a folder or at the beginning of the file name.
+    /// Returns the student label that a folder of the path has as its name, or that begins the file name.
     fn find_label_in_path(&self, path: &Path) -> Option<String> {
         let begins = |part: &str, label: &str| {
             part.strip_prefix(label)
@@ -159,8 +159,7 @@ impl CollectionBuilder<'_> {
         found.manifest.participant.clone().or_else(|| self.find_label_in_path(&found.source))
     }
 
-    /// Returns whether a run started from a handout of the class, or from the lesson of the class without a
-    /// handout.
+    /// Returns whether a run started from a handout of the class, or from the class's lesson without a handout.
     fn belongs_to_class(&self, manifest: &Manifest) -> bool {
         let class = self.sources.class;
         let has_class_handout = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
@@ -234,8 +233,7 @@ impl CollectionBuilder<'_> {
         }
     }
 
-    /// Returns the reason why a valid record does not count. Returns `None` if the record matches the
-    /// student's handout.
+    /// Returns the reason why a valid record does not count, or `None` if the record matches the student's handout.
     fn find_mismatch(&self, found: &FoundRun, label: &str) -> Option<(RunVerdict, ClassFinding)> {
         let (class, manifest) = (self.sources.class, &found.manifest);
         let (label, run) = (label.to_owned(), manifest.id.clone());
@@ -263,8 +261,8 @@ impl CollectionBuilder<'_> {
         None
     }
 
-    /// Returns whether a run continues the recorded past in the student's handout. Returns `true` if the handout is no
-    /// longer in the folder.
+    /// Returns whether a run begins with the past that is recorded in the student's handout. Returns `true` if the
+    /// handout is no longer in the folder.
     fn starts_with_handout(&self, student: &ClassStudent, found: &FoundRun) -> bool {
         let path = self.sources.folder.join(format!("{}{HANDOUT_EXTENSION}", student.label));
         let Ok(Handout { content: HandoutContent::Run(past), .. }) = Handout::read(&path) else {

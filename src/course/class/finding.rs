@@ -1,4 +1,4 @@
-//! Problems with submissions, reported to the instructor.
+//! Problems with submissions, which are reported to the instructor.
 
 use std::path::PathBuf;
 
@@ -48,7 +48,8 @@ pub enum ClassFinding {
         label: String,
         /// Name of the run.
         run: String,
-        /// Label of the student who received the handout; `None` if only the past of the run differs.
+        /// Label of the student whose handout was used; `None` if the student's own handout was used but the past of
+        /// the run differs from it.
         of: Option<String>,
     },
     /// A run of the lesson that did not start from a handout of this class.

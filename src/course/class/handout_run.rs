@@ -1,5 +1,5 @@
-//! A run that is handed out. Every student receives a branch from the end of the run's last week, with a
-//! separate label and name.
+//! A run that is handed out. Every student receives a branch from the end of the run's last week, with its own label
+//! and name.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub(super) struct HandoutRun {
 }
 
 impl HandoutRun {
-    /// Reads and verifies a run that is to be handed out.
+    /// Reads and verifies a run to hand out.
     ///
     /// # Errors
     /// Returns an error if the run is damaged, is an unfinished baseline run, belongs to a study or a lesson, has no day left,
@@ -62,7 +62,7 @@ impl HandoutRun {
         &self.manifest.id
     }
 
-    /// Returns the files of a branch for one student. Uses a temporary folder in `parent_folder`.
+    /// Returns the files of a branch for one student. Builds them in a temporary folder inside `parent_folder`.
     ///
     /// # Errors
     /// Returns an error if `parent_folder` cannot be written.
@@ -83,7 +83,7 @@ impl HandoutRun {
             participant: Some(label.to_owned()),
             handout: Some(stamp.clone()),
             rules: Some(SessionRules::for_mode(mode)),
-            // The record's earlier runs and consent belong to the instructor, so the student's copy omits them.
+            // The earlier runs and the consent belong to the instructor, so the student's copy omits them.
             earlier: Vec::new(),
             earlier_runs: 0,
             consent: None,

@@ -1,4 +1,4 @@
-//! The decisions of a week of a lesson, and the differences between two plays.
+//! The decisions in a week of a lesson, and the differences between two plays.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,7 +22,7 @@ pub(super) struct WeekDecisions {
 pub struct DifferentDecision {
     /// The tool with different settings or calls.
     pub tool: ToolId,
-    /// The difference in settings or calls.
+    /// How the settings or calls of the tool differ.
     #[serde(flatten)]
     pub difference: DecisionDifference,
 }
@@ -48,11 +48,11 @@ pub enum DecisionDifference {
 /// A setting that differs between the student's play and the reference play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SettingDifference {
-    /// Name of the setting.
+    /// Path of the argument, such as `content_marketing S1`.
     pub name: String,
-    /// Value in the student's play, or null.
+    /// Value in the student's play; null if the play does not set it.
     pub own: Value,
-    /// Value in the reference play, or null.
+    /// Value in the reference play; null if the play does not set it.
     pub good: Value,
 }
 
@@ -134,7 +134,7 @@ fn is_same_value(one: &Value, other: &Value) -> bool {
     }
 }
 
-/// Flattens nested arguments; the keys are their paths, such as `content_marketing S1`.
+/// Flattens nested arguments. The keys of the result are paths, such as `content_marketing S1`.
 fn flatten_arguments(arguments: &Map<String, Value>) -> BTreeMap<String, Value> {
     let mut found = BTreeMap::new();
     for (name, value) in arguments {

@@ -15,7 +15,8 @@ pub(super) fn require_lesson(session: &Session) -> Result<&LessonProgress, Rejec
     session.lesson().ok_or_else(|| Rejection::new("not_in_a_lesson", "this run is not part of a lesson"))
 }
 
-/// Retries a step from its beginning in a new run, whose record contains the number of the try. Steps are counted from 0.
+/// Retries a step from its beginning in a new run. The record of the new run contains the number of the try. Steps are
+/// counted from 0.
 ///
 /// # Errors
 /// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved`.

@@ -1,4 +1,4 @@
-//! The lesson page of a student: task, goals with current values, hints, pitfalls.
+//! The lesson page that a student sees: task, goals with current values, hints and pitfalls.
 
 use serde::Serialize;
 
@@ -16,13 +16,13 @@ pub struct LessonStatus {
     pub title: String,
     /// Title of the part, if the lesson has several parts.
     pub part: Option<String>,
-    /// The current step, counted from 0, or the last started step if the part has ended.
+    /// The current step, counted from 0. After the part has ended, the last step that was started.
     pub step: usize,
     /// Number of steps of the part.
     pub steps: usize,
     /// Title of the step.
     pub step_title: String,
-    /// Text of the step.
+    /// Task of the step.
     pub text: String,
     /// Number of completed weeks of the step, and total number of its weeks.
     pub weeks: (u32, u32),
@@ -34,7 +34,7 @@ pub struct LessonStatus {
     pub goals: Vec<GoalStatus>,
     /// Texts of the hints that the student has used.
     pub hints: Vec<String>,
-    /// Number of hints of the step.
+    /// Number of hints that the step has.
     pub hint_count: usize,
     /// Day and explanation of each pitfall that the student triggered.
     pub pitfalls: Vec<(u32, String)>,
@@ -45,11 +45,11 @@ pub struct LessonStatus {
     /// Number of the next part, counted from 1; `None` unless this part has ended and is not the last part.
     pub next_part: Option<u32>,
     /// Whether the student can compare the run with opponents that play the same seed from day 0. `true` if the lesson
-    /// has ended and its last part starts with an empty company and sets no parameters.
+    /// has ended and its last part started with an empty company and sets no parameters.
     pub has_opponents: bool,
-    /// Names of the available screens besides the Overview; `None` for all screens.
+    /// Names of the screens that are available in addition to the overview; `None` if all screens are available.
     pub screens: Option<Vec<String>>,
-    /// Tools that the student can use; `None` for all tools.
+    /// Tools that the student can use; `None` if all tools are available.
     pub tools: Option<Vec<ToolId>>,
     /// Whether the lesson sets the capacity tier, so that the student cannot set it.
     pub has_automatic_capacity: bool,
@@ -64,7 +64,7 @@ pub struct LessonQuestion {
     pub text: String,
     /// The possible answers; empty if the question asks for a number.
     pub choices: Vec<String>,
-    /// Unit of the number that the question asks for.
+    /// Unit of the guessed number; empty if the question has choices.
     pub unit: String,
     /// The student's guess. For a question with choices, the number of the selected choice, counted from 1.
     pub guess: Option<f64>,
@@ -87,7 +87,7 @@ pub struct GoalStatus {
     /// Whether `bound` is a maximum.
     #[serde(skip)]
     pub wants_least: bool,
-    /// Required share of the reference play's value, if the goal is relative to the reference play.
+    /// Share of the reference play's value that the student must reach; `None` if the goal is an absolute value.
     #[serde(skip)]
     pub of_good_play: Option<f64>,
     /// Whether the value is in dollars.
@@ -141,7 +141,7 @@ impl LessonStatus {
     }
 }
 
-/// Returns the goals of a step. A goal that is not judged yet is measured up to the current week.
+/// Returns the goals of a step. Goals that are not judged yet show their value up to the current week.
 fn goal_statuses(
     session: &mut Session,
     lesson_progress: &LessonProgress,

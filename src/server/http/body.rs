@@ -18,7 +18,7 @@ const BODY_DEADLINE: Duration = Duration::from_secs(30);
 #[derive(Debug)]
 pub struct BodyFields {
     fields: Map<String, Value>,
-    /// Rejection if the body contains a value that JSON cannot represent, such as `NaN`.
+    /// Rejection if the body contains a literal that JSON does not allow, such as `NaN`.
     pub rejection: Option<Rejection>,
 }
 
@@ -33,7 +33,7 @@ impl BodyFields {
         self.fields.get(name).unwrap_or(&Value::Null)
     }
 
-    /// Returns the remaining fields of the body.
+    /// Returns all fields that were not taken, as one object.
     pub fn into_remaining(self) -> Value {
         self.fields.into()
     }

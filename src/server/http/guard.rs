@@ -71,10 +71,10 @@ fn constant_time_eq(given: &str, expected: &str) -> bool {
     blake3::hash(given.as_bytes()) == blake3::hash(expected.as_bytes())
 }
 
-/// Generates a random token.
+/// Generates a random token of 24 bytes.
 ///
 /// # Errors
-/// The system returns no random numbers.
+/// The system cannot generate random numbers.
 pub fn new_token() -> Result<String, RunError> {
     let mut bytes = [0u8; 24];
     getrandom::fill(&mut bytes).map_err(|error| {

@@ -37,7 +37,7 @@ pub(super) struct RouteState {
 pub struct ServedRun {
     /// ID of the served run.
     pub run: String,
-    /// Notified when a request to stop the server has arrived.
+    /// Notified when a request to stop the server arrives.
     pub stop: Arc<Notify>,
 }
 
@@ -52,7 +52,7 @@ impl RouteState {
     }
 }
 
-/// Returns a router with all routes, which the guard protects.
+/// Returns a router with all routes. The guard checks every request.
 pub fn router(
     handle: SessionHandle,
     guard: RequestGuard,
@@ -80,7 +80,7 @@ pub fn router(
         .with_state(state)
 }
 
-/// Returns the routes that do not exist in release 2, or whose responses differ there.
+/// Returns the routes that do not exist in release 2, or whose responses differ in release 2.
 fn release_1_router() -> Router<RouteState> {
     Router::new()
         .route("/vars", get(|state: State<RouteState>| handle_read(state, ApiRequest::CurrentDay)))
@@ -169,7 +169,7 @@ async fn call(State(state): State<RouteState>, body: Body) -> Response {
         Ok(fields) => fields,
         Err(wrong) => return close_connection(to_http_response(&state.converted(wrong))),
     };
-    // A name that is not a string is converted to text, so that the tool is rejected as unknown.
+    // A name that is not a string is converted to text, so that it is rejected as an unknown tool.
     let tool = match fields.take("tool") {
         Value::String(name) => name,
         Value::Null => String::new(),

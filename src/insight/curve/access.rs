@@ -74,8 +74,8 @@ impl CurveExplorer {
         Ok(CurveExplorer::from_markets(group, basis, offer, markets))
     }
 
-    /// Returns the curve explorer for the estimates of market studies, but does not compute the points of the curve. The
-    /// expected decisions of leads do not need them.
+    /// Returns the curve explorer for the estimates of market studies, but does not compute the points of the curve.
+    /// The expected decisions of leads do not need the points.
     ///
     /// # Errors
     /// `group_not_discovered`, `guess_first`.

@@ -75,11 +75,11 @@ pub struct WorldDraw {
     pub family: DrawFamily,
     /// Parameters on which the distribution depends.
     pub parameters: &'static [&'static str],
-    /// Files below `src/world` that contain the draw, with the number of occurrences.
+    /// Files below `src/world` that contain the draw, each with the number of its occurrences.
     pub source_files: &'static [(&'static str, usize)],
     /// Function that returns the distribution for a member of the family.
     pub distribution: fn(&Params, usize) -> DrawDistribution,
-    /// Function that makes the n-th draw for a member with the simulator's code.
+    /// Function that makes the n-th draw for a member of the family by calling the simulator's code.
     pub draw: fn(&DrawContext, usize, u64) -> f64,
 }
 

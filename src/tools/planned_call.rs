@@ -20,10 +20,10 @@ pub struct PlannedCall<A> {
     pub reply: Reply<A>,
 }
 
-/// Function that builds a result from the resolved command. Returns `None` for a command of another kind.
+/// A function that builds a result from the resolved command. Returns `None` for a command of another kind.
 type AnswerBuilder<A> = Box<dyn FnOnce(&ResolvedCommand) -> Option<A>>;
 
-/// Result of a planned call.
+/// The result of a planned call.
 pub enum Reply<A> {
     /// A result that does not depend on random draws.
     Immediate(A),
@@ -42,7 +42,7 @@ pub struct Script {
     pub timeout_seconds: f64,
 }
 
-/// Exit code and output of a script.
+/// The exit code and output of a script.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ScriptOutput {
     /// Exit code; 0 if the script ran to its end.

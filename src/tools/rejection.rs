@@ -50,7 +50,7 @@ pub struct DealResults {
     pub results: Vec<DealResult>,
 }
 
-/// Result of a single deal.
+/// The result of a single deal.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum DealResult {

@@ -6,7 +6,7 @@ use super::notebook::Notebook;
 use novamind_world::events::Reading;
 use novamind_world::params::Interface;
 
-/// Interface through which tools read data of the session.
+/// An interface through which tools read data of the session.
 pub trait SessionContext: Sync {
     /// Returns a description of a PMI reading in words.
     fn describe_economy(&self, reading: &Reading) -> String;

@@ -128,7 +128,7 @@ impl<'a> EnterpriseProfile<'a> {
     }
 }
 
-/// Decision style of an enterprise.
+/// The decision style of an enterprise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(usize)]
 enum DecisionStyle {

@@ -15,7 +15,7 @@ use novamind_world::retention::renewal::ongoing_discount;
 /// A customer number that does not exist, so that no discount for a single customer applies.
 const NO_CUSTOMER: u32 = 0;
 
-/// Proof that an inspection of a group's traits is permitted and recorded. The true curve requires this proof.
+/// A proof that an inspection of a group's traits is permitted and recorded. The true curve requires this proof.
 #[derive(Debug)]
 pub struct CurveInspection {
     group: Group,

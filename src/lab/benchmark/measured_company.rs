@@ -15,7 +15,7 @@ pub const SEED: u64 = 42;
 /// Number of weeks after which every subscriber has been billed at least once.
 const FULL_BILLING_WEEKS: u32 = 5;
 
-/// Where the run of a measured company is stored.
+/// The storage of a measured company's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RunStorage {
     /// Memory only, without a database.

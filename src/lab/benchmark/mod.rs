@@ -86,7 +86,7 @@ pub use cases::{CASES, save_large_company};
 pub use machine::calibration_seconds;
 pub use queries::create_company_for_queries;
 
-/// Unit of a benchmark figure.
+/// The unit of a benchmark figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BenchUnit {

@@ -75,7 +75,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"limit": 1}"#,
 };
 
-/// Maximum number of posts that a call returns.
+/// The maximum number of posts that a call returns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PostLimit {
     /// The limit that the parameters define.
@@ -115,7 +115,7 @@ pub struct SocialPost {
     pub replying_to_your_post: Option<String>,
 }
 
-/// Author of a post in the social feed.
+/// The author of a post in the social feed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PostAuthor {
     /// Group whose reaction a comment on the company's post expresses.

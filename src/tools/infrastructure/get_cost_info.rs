@@ -56,7 +56,7 @@ pub struct PriceList {
     pub note: String,
 }
 
-/// Cost and quality of a model tier.
+/// The cost and quality of a model tier.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelTierFacts {
     /// Compute cost in dollars per unit.
@@ -67,7 +67,7 @@ pub struct ModelTierFacts {
     pub class: String,
 }
 
-/// Size and cost of a capacity tier.
+/// The size and cost of a capacity tier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct CapacityTierFacts {
     /// Capacity in units per day.

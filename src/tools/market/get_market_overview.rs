@@ -42,7 +42,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: "{}",
 };
 
-/// Overview of the known groups and the economy.
+/// An overview of the known groups and the economy.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct MarketOverview {
     /// Known groups, ordered by identifier.

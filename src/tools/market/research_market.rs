@@ -40,7 +40,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: "{}",
 };
 
-/// Result of an attempt to discover a group.
+/// The result of an attempt to discover a group.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DiscoveryAttempt {

@@ -19,7 +19,7 @@ use super::rejection::Rejection;
 use super::spec::NumberRange;
 use novamind_world::identifiers::Plan;
 
-/// Result of tools that set one number per plan.
+/// The result of tools that set one number per plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlanUpdate<T: Serialize> {
     /// Values that the call set, in the order of the call.

@@ -5,7 +5,7 @@ use novamind_world::events::PostAuthor;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Style in which the members of a group write.
+/// The style in which the members of a group write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpeechRegister {
     /// Casual style, as among friends.

@@ -38,7 +38,7 @@ impl MeasuredDay {
         }
     }
 
-    /// Number of active subscribers with an open issue.
+    /// Returns the number of active subscribers with an open issue.
     pub(crate) fn open_issues(&self) -> u32 {
         Group::all().map(|group| self.groups[group].open_issues).sum()
     }

@@ -47,8 +47,8 @@ impl PlanEconomics {
         }
     }
 
-    /// Returns the usage of a group in units per seat per day, and the source of this figure: the last day, or the
-    /// market study if no enterprise of the group used the product or if its seats are new.
+    /// Returns the usage of a group in units per seat per day, and the source of this figure. The source is the last
+    /// day, or the market study if no enterprise of the group used the product or if the group's seats are new.
     pub fn usage_per_seat(&self, group: &str) -> Option<(f64, String)> {
         let study = Group::parse(group).and_then(|group| self.estimated_usage.get(&group).copied());
         let Some(measured) = self.usage.measured_usage(group) else {

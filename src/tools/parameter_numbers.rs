@@ -1,7 +1,7 @@
 //! Numbers in documentation: each placeholder in braces names a parameter and is replaced with the current value.
 //!
-//! `{table.key}` is a parameter. `{info_level.2.cost}` is a parameter in a list of tables, whose entries are named by
-//! level, tier or id, otherwise by index from 0. A colon introduces the format:
+//! `{table.key}` is a parameter. `{info_level.2.cost}` is a parameter in a list of tables. An entry of the list is
+//! named by its level, tier or ID, or by its index from 0 if it has none of these. A colon introduces the format:
 //!
 //! * `%` percentage, `100` percentage without the sign,
 //! * `$` dollars, `,` thousands separators, `-` absolute value, `+1` value plus one,

@@ -1,8 +1,9 @@
 //! Causes that continue: settings that act in both weeks, and market changes in the previous week.
 //!
-//! An unchanged setting can change a figure. Development, for example, raises quality on every day. A continuing cause
-//! is evaluated without any difference between the weeks: both weeks are simulated without the player's calls of the
-//! explained week and with the world inputs of the previous week, once with and once without the cause.
+//! An unchanged setting can change a figure. Development, for example, raises quality on every day. To evaluate a
+//! continuing cause, both weeks are simulated twice, with and without the cause. To remove all other differences
+//! between the weeks, the simulations omit the player's calls of the explained week and use the world inputs of the
+//! previous week.
 
 use super::CauseProgressFn;
 use super::attribution::CauseContribution;
@@ -94,8 +95,8 @@ impl WeekResimulation {
         Some(())
     }
 
-    /// Simulates the previous week and the explained week with some of the continuing causes, without the player's
-    /// calls of the explained week, and with the world inputs of the previous week.
+    /// Simulates the previous week and the explained week with some of the continuing causes. Omits the player's calls
+    /// of the explained week and uses the world inputs of the previous week.
     fn simulate_two_weeks(
         &self,
         acting: u32,

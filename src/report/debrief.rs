@@ -220,7 +220,7 @@ fn describe_effect(parting: &FirstDifference, debrief: &Debrief) -> String {
     text + &describe_single_or_joint_effect(effect, debrief)
 }
 
-/// Explains why the first different decisions of the reference play can worsen the result if they are used alone.
+/// Explains why the first decisions of the reference play that differ can worsen the result if only they are copied.
 fn describe_single_or_joint_effect(effect: ReferenceEffect, debrief: &Debrief) -> String {
     let (mine, with) = effect.judged.unwrap_or((effect.own, effect.with));
     if with >= mine {
@@ -283,7 +283,7 @@ fn split_paragraphs(text: &str) -> Vec<String> {
     text.split("\n\n").map(plain).filter(|paragraph| !paragraph.is_empty()).collect()
 }
 
-/// Returns the glossary terms that a Markdown text emphasizes, without duplicates.
+/// Returns the glossary terms that a Markdown text emphasizes, each once.
 pub fn emphasized_terms(text: &str) -> Vec<&'static Term> {
     let mut found: Vec<&'static Term> = Vec::new();
     let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -1,6 +1,6 @@
-//! Fit: the plans compared with the estimated requirements of a group. An estimate is a range around the
-//! value from a market study, so a plan's figure is below, in or above the range. A deficit is reported only
-//! if it exists for every value in the range.
+//! Fit: the plans compared with the estimated requirements of a group. An estimate is a range around the value from a
+//! market study, so the figure of a plan is below, in or above this range. A deficit is reported only if it exists for
+//! every value in the range.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use novamind_base::formatting::{QUALITY_DECIMALS, dollars, dollars_and_cents, pe
 use novamind_session::identifiers::{ByGroup, ByPlan, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, true_value_range};
 
-/// Smallest and largest true value that are consistent with an estimate.
+/// The true values that are consistent with an estimate, from smallest to largest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TrueValueRange {
     /// Smallest possible true value.
@@ -24,14 +24,14 @@ pub struct TrueValueRange {
 pub enum RangePosition {
     /// The figure is below the range.
     Below,
-    /// The figure is in the range, so the true value can be smaller or larger than the figure.
+    /// The figure is in the range, so the true value can be above or below it.
     InRange,
     /// The figure is above the range.
     Above,
 }
 
 impl TrueValueRange {
-    /// Returns the possible true values for an estimate with a relative error of at most `share`.
+    /// Returns the true values that are possible if the relative error of the estimate is at most `share`.
     pub fn from_estimate(estimate: f64, share: f64) -> TrueValueRange {
         true_value_range(estimate, share).into()
     }
@@ -55,7 +55,7 @@ impl TrueValueRange {
         format!("${}", format_range(self.least, self.most, 0).replace(" to ", " to $"))
     }
 
-    /// Formats the range as whole numbers, for labels that already have the unit: `180 to 841`.
+    /// Formats the range as whole numbers without a unit, for labels that already contain the unit: `180 to 841`.
     pub fn format_units(&self) -> String {
         format_range(self.least, self.most, 0)
     }
@@ -95,12 +95,12 @@ impl FitCriterion {
 /// Prices, quality and quota of a plan for one group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanFit {
-    /// Plan that is compared with the requirements of the group.
+    /// Plan to which the other fields refer.
     pub plan: Plan,
     /// List price, dollars per month; 0 if the plan is not on sale.
     pub list_price: f64,
-    /// List price less the discount for leads from all channels. Leads compare this price with their budget.
-    /// Enterprises negotiate their price.
+    /// List price less the discount for leads from all channels. Leads compare this price with their budget. For
+    /// enterprises, it equals the list price, because they negotiate.
     pub lead_price: f64,
     /// List price less the current discount. Subscribers are billed this price.
     pub billed_price: f64,
@@ -194,7 +194,7 @@ fn plan_fit(group: Group, plan: Plan, quality: f64, settings: &Settings) -> Plan
         plan,
         list_price: list,
         lead_price: less(leads),
-        // No customer has the number 0, so discounts for single customers are excluded.
+        // No customer has the number 0, so this sum excludes discounts for single customers.
         billed_price: less(settings.promotion.sum(0, group, plan)),
         quality,
         quota: settings.core.quotas[plan].units(),
@@ -252,8 +252,8 @@ impl LeadFlow {
 }
 
 impl Fit {
-    /// Compares a plan with the group's requirements by one criterion. Returns `None` for the price if the group is an
-    /// enterprise group, because enterprises negotiate prices.
+    /// Compares a plan with the group's requirements by one criterion. Returns `None` for the price of an enterprise
+    /// group, because enterprises negotiate prices.
     pub fn position(&self, plan: Plan, concern: FitCriterion) -> Option<RangePosition> {
         let plan_fit = &self.plans[plan];
         match concern {
@@ -264,7 +264,7 @@ impl Fit {
         }
     }
 
-    /// Returns the smallest deficit over all possible true values, or `None` if no deficit is certain.
+    /// Returns the smallest deficit that is consistent with the estimate, or `None` if there may be no deficit.
     pub fn certain_gap(&self, plan: Plan, concern: FitCriterion) -> Option<f64> {
         let plan_fit = &self.plans[plan];
         match (concern, self.position(plan, concern)?) {
@@ -275,9 +275,9 @@ impl Fit {
         }
     }
 
-    /// Returns the cheapest plan on sale that can suit an enterprise of the group: no deficit in quality is certain, and
-    /// its quota covers the estimated usage of all seats, in units per day. Without an estimate, its quota covers the
-    /// smallest enterprise.
+    /// Returns the cheapest plan on sale that can suit an enterprise of the group: no deficit in quality is certain,
+    /// and the quota covers `usage`, the estimated usage of all seats in units per day. If `usage` is `None`, the quota
+    /// must cover the usage of the smallest enterprise.
     pub fn cheapest_suitable_plan(&self, usage: Option<f64>) -> Option<Plan> {
         let suits = |plan: &Plan| {
             let covers_usage = match usage {
@@ -291,7 +291,7 @@ impl Fit {
         Plan::ALL.into_iter().filter(suits).min_by(|left, right| price(left).total_cmp(&price(right)))
     }
 
-    /// Describes the certain deficits of a plan, and the criteria for which the result is uncertain.
+    /// Describes the deficits of a plan that are certain, and the criteria for which a deficit is possible.
     pub fn describe_gaps(&self, plan: Plan) -> String {
         let plan_fit = &self.plans[plan];
         if plan_fit.list_price <= 0.0 {

@@ -40,7 +40,7 @@ pub fn to_html(page: &Page) -> String {
     )
 }
 
-/// Maximum number of sections that are initially expanded. If a page has more sections, all of them are
+/// Maximum number of collapsible sections that are initially expanded. On a page with more sections, all of them are
 /// collapsed.
 const MAX_EXPANDED_SECTIONS: usize = 12;
 

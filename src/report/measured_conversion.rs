@@ -10,12 +10,12 @@ use novamind_tools::ToolId;
 /// Number of weeks over which conversion is measured.
 pub const MEASURED_WEEKS: usize = 4;
 
-/// Settings that leads evaluate when they arrive. If one of them changes during the measured weeks, not all
-/// leads saw the same plans.
+/// Settings by which leads judge the plans when they arrive. If one of them changes during the measured weeks, the
+/// leads of these weeks did not all see the same plans.
 pub const SETTINGS_JUDGED_BY_LEADS: [ToolId; 4] =
     [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetUsageQuotas, ToolId::SetLeadPromotion];
 
-/// Number of leads of a group in the last weeks, and number of those leads that took a plan.
+/// Conversion of a group over the last weeks: how many leads arrived, and how many of them took a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredConversion {
     /// Number of individuals who signed up, or number of enterprises that requested an offer.
@@ -24,8 +24,8 @@ pub struct MeasuredConversion {
     pub leads: u32,
     /// First and last measured week; `None` before the first week.
     pub weeks: Option<(u32, u32)>,
-    /// Day of the last change of the plans after the start of the measured weeks; `None` if the plans did not
-    /// change.
+    /// Day of the last change of the plans after the start of the measured weeks; `None` if the plans did not change
+    /// since.
     pub changed_on: Option<u32>,
     is_enterprise: bool,
 }
@@ -43,7 +43,7 @@ impl MeasuredConversion {
         let decided = company.decisions().iter().map(|decisions| (decisions.day, &decisions.changes));
         let mut days = decided
             .chain([(session.day(), &today)])
-            // A change at the start of the measured weeks applies to all leads in these weeks.
+            // A change at the start of the measured weeks affects all leads in these weeks.
             .filter(|(day, _)| *day > start)
             .filter(|(_, changes)| {
                 changes.iter().any(|change| SETTINGS_JUDGED_BY_LEADS.contains(&change.setting.tool()))
@@ -81,7 +81,7 @@ impl MeasuredConversion {
         )
     }
 
-    /// Describes the measurement briefly: `measured 26% of 1,230 leads`.
+    /// Describes the measurement in a few words: `measured 26% of 1,230 leads`.
     pub fn describe_briefly(&self) -> String {
         match self.share() {
             Some(share) => {

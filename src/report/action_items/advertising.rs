@@ -10,10 +10,10 @@ use novamind_base::formatting::{dollars_and_cents, json_number};
 use novamind_session::identifiers::{Channel, Group};
 use novamind_tools::ToolId;
 
-/// Minimum number of enterprises that must arrive in four weeks before missing requests are reported.
+/// Minimum number of enterprises of a group that must arrive in four weeks before missing requests are reported.
 const MIN_ENTERPRISES: u32 = 3;
 
-/// Finds enterprise groups that receive advertising but request no offer.
+/// Finds enterprise groups that receive advertising but request no offers.
 pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let recent = &situation.groups[situation.groups.len().saturating_sub(4)..];
     let enterprises = situation.estimates.iter().filter(|estimates| estimates.group.is_enterprise());
@@ -33,7 +33,7 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
             pluralize(recent.len() as u32, "week"),
             format_money(ads)
         );
-        // If no deficit of the current offers is known, only the cost of advertising can be reported.
+        // If the cause is unknown, only the cost of advertising can be reported.
         let (text, proposal, place) = match offers.main_deficit() {
             missing @ (OfferDeficit::Quota | OfferDeficit::Quality) => {
                 let (remedy, proposal, place) = offers.propose_remedy(missing, ads * RISK_DAYS)?;
@@ -56,7 +56,7 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
     unwanted.collect()
 }
 
-/// Finds pairs of channel and group whose cost per lead has risen strongly.
+/// Finds pairs of channel and group with a strong rise in cost per lead.
 pub(super) fn rising_lead_costs(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     lead_costs_by_pair(situation.groups).iter().filter_map(|pair| expensive_leads(situation, pair)).collect()
 }
@@ -68,7 +68,7 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
     if ads <= 0.0 {
         return None;
     }
-    // Ads whose customers already pay more with their first bill than the ads cost are not too expensive.
+    // Ads are not too expensive if the first bills of the customers that they bring exceed their cost.
     let bill = situation.last_group_week().map_or(0.0, |groups| groups[group].revenue_per_subscriber());
     if pair.recent.cost_per_bill().is_some_and(|cost| cost < bill) {
         return None;
@@ -86,7 +86,7 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
         text,
         proposal: Some(format!("Removing these ads saves {} a day.", format_money(ads))),
         target: target_without_ads(situation, group, |other| other == channel),
-        // Additional cost of the leads compared with the earlier cost per lead.
+        // Amount by which the leads cost more than they would at the earlier cost per lead.
         at_risk: ads * RISK_DAYS * (1.0 - 1.0 / rise),
         is_urgent: false,
     })
@@ -106,7 +106,8 @@ fn describe_lead_costs(spell: &AdResults) -> String {
     }
 }
 
-/// Returns the advertising form, filled so that the budgets of a group in some channels are removed.
+/// Returns the advertising form, filled with the current budgets except those of a group in the channels that `of`
+/// selects.
 fn target_without_ads(
     situation: &DiagnosisContext<'_>,
     group: Group,

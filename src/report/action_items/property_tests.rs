@@ -1,5 +1,5 @@
-//! Properties of the action items of generated companies. The amounts and times of an item follow from the
-//! numbers in its text and agree with the figures on other screens, and the proposed call is accepted.
+//! Properties of the action items of generated companies: the amounts and times of an item follow from the numbers in
+//! its text, they agree with the figures on other screens, and the tool accepts the proposed call.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use novamind_session::{NewRun, Storage};
 
 const WEEKS: u32 = 12;
 
-/// A generated company: its start, its opening decisions, and a second decision in a later week.
+/// A generated company: its seed and starting cash, its first decisions, and a second decision in a later week.
 #[derive(Debug, Clone)]
 struct Company {
     seed: u64,
@@ -113,8 +113,7 @@ fn numbers_excludes_identifiers() {
     assert_eq!(numbers("D_S05: $1,234.50 of 7 (12.5%) on A. 3 weeks, 9."), [1234.5, 7.0, 12.5, 3.0, 9.0]);
 }
 
-/// Asserts that a displayed number differs from the computed number by at most `tolerance`, which allows for
-/// rounding.
+/// Asserts that a displayed number differs from the computed number by at most `tolerance`, the largest rounding error.
 #[track_caller]
 fn assert_near(shown: f64, computed: f64, tolerance: f64, need: &ActionItem) {
     assert!((shown - computed).abs() <= tolerance + 1e-6, "{shown} {computed}: {need:#?}");
@@ -162,12 +161,12 @@ fn check_item(need: &ActionItem, session: &mut Session) {
             let [spend, total] = proposed[..] else { panic!("{need:#?}") };
             assert_eq!(total, spend * 7.0 * Channel::ALL.len() as f64, "{need:#?}");
         }
-        // Other tests in this crate and in the crate `session` check the runway.
+        // The runway is checked by other tests, in this crate and in the crate `session`.
         Problem::Runway | Problem::NoPrice | Problem::NoRequests(_) => {}
     }
 }
 
-/// Checks that the compute cost exceeds the revenue and that the Product screen also shows a negative margin.
+/// Checks that the compute cost exceeds the revenue, and that the margin on the Product screen is also negative.
 fn check_margin(need: &ActionItem, said: &[f64], proposed: &[f64], session: &mut Session) {
     let [_, revenue, compute] = said[..] else { panic!("{need:#?}") };
     assert!(compute > revenue, "{need:#?}");
@@ -186,7 +185,7 @@ fn check_margin(need: &ActionItem, said: &[f64], proposed: &[f64], session: &mut
     }
 }
 
-/// Checks that the shares and the difference follow from the counts, and that the counts equal those of
+/// Checks that the conversions and their difference follow from the counts, and that the counts equal those of
 /// [`fits`].
 fn check_conversion_fall(need: &ActionItem, said: &[f64], group: Group, session: &Session) {
     let [signed, leads, share, _, usual_signed, usual_leads, usual, fewer] = said[..8] else {
@@ -228,7 +227,7 @@ fn check_no_sales(need: &ActionItem, said: &[f64], proposed: &[f64], group: Grou
     }
 }
 
-/// Checks that the tier is exceeded in the stated week at the stated growth.
+/// Checks that usage exceeds the tier in the stated week if it grows at the stated rate.
 fn check_capacity(need: &ActionItem, said: &[f64], proposed: &[f64]) {
     let [busiest, share, units, tier, growth] = said[..] else { panic!("{need:#?}") };
     assert_near(share, 100.0 * busiest / units, 0.5, need);
@@ -266,8 +265,7 @@ fn check_lead_cost(need: &ActionItem) {
     }
 }
 
-/// Plays generated companies and checks every item in every week. Returns the number of reports of each
-/// problem.
+/// Plays generated companies and checks every item in every week. Returns how often each problem was reported.
 fn check_companies(count: usize) -> BTreeMap<&'static str, usize> {
     let mut runner = TestRunner::deterministic();
     let mut reported = BTreeMap::new();

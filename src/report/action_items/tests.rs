@@ -1,5 +1,5 @@
-//! Tests companies that have one problem each. The problem must be the first action item. A healthy company
-//! has no action items.
+//! Tests with companies that have one problem each: this problem must be the first action item. A healthy company must
+//! have no action items.
 
 use serde_json::{Value, json};
 
@@ -44,7 +44,7 @@ fn play_company(seed: u64, cash: f64, calls: &[(&str, Value)], weeks: usize) -> 
     session
 }
 
-/// Returns the first action item, after checking that the tool accepts the proposed arguments.
+/// Returns the first action item. Also checks that the tools accept the proposed arguments of all items.
 #[track_caller]
 fn first_action_item(session: &Session) -> ActionItem {
     let all = action_items(session);
@@ -314,7 +314,7 @@ fn backlog_item_names_the_operations_spend_that_clears_it_in_a_week() {
         Problem::Backlog,
         &[" wait for support.", "expected when no one waits, and the backlog in "],
     );
-    // The proposed number of days must follow from the numbers in both sentences.
+    // The proposed number of days must follow from the numbers in the two sentences.
     let numbers: Vec<f64> = format!("{} {}", need.text, need.proposal.as_deref().unwrap_or_default())
         .replace(',', "")
         .split(|sign: char| !sign.is_ascii_digit())
@@ -383,7 +383,8 @@ fn expiring_threads_item_links_to_the_most_valuable_thread() {
         Problem::Threads,
         &["enterprises wait for an answer", "Without an answer, their threads end by day"],
     );
-    // The amount is computed with the list price of a plan that the text names: plan A lacks the quota.
+    // The payments are computed from the list price of a plan that the text names. It is not plan A, whose quota is too
+    // small.
     let text = need.describe();
     assert!(text.contains(" a month at ") && !text.contains("plan A"), "{text}");
     let ActionTarget::Thread(first) = need.target else { panic!("{need:?}") };

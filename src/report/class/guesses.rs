@@ -50,7 +50,8 @@ pub fn class_questions<'a>(view: &'a ClassView<'a>) -> Vec<ClassQuestion<'a>> {
     all
 }
 
-/// Returns the first run of each student in a part. Guesses of later tries are ignored because the student knows the outcome.
+/// Returns the first run of each student in a part. Ignores guesses of later tries, because the student then knows the
+/// outcome.
 fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
     let part_runs: Vec<&ClassRun> = view.valid_runs().filter(|run| run.evidence.part == part).collect();
     let is_first = |at: usize| at == 0 || part_runs[at - 1].label != part_runs[at].label;

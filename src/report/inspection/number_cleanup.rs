@@ -2,7 +2,7 @@
 
 use novamind_base::formatting::grouped_number;
 
-/// Number of digits before the decimal point from which a number is written in powers of ten.
+/// Minimum number of digits before the decimal point of a number that is written in powers of ten.
 const MIN_SCIENTIFIC_DIGITS: usize = 16;
 
 /// Normalizes the numbers in lines of text.
@@ -43,7 +43,7 @@ pub fn clean_up_line(text: &str) -> String {
     settled + rest
 }
 
-/// Writes a number in powers of ten if the number has too many digits before the decimal point.
+/// Returns the number in powers of ten, or `None` if it is too short for this notation.
 fn to_scientific(number: &str) -> Option<String> {
     let plain = number.replace(',', "");
     let digits = plain.split('.').next().map_or(0, str::len);

@@ -69,7 +69,8 @@ pub fn describe_outcome(outcome: &CurveOutcome) -> String {
     }
 }
 
-/// Describes the estimated and the measured conversion briefly: `estimated 31% (4% to 70%), measured 26% of 1,230 leads`.
+/// Describes the estimated and the measured conversion briefly: `estimated 31% (4% to 70%), measured 26% of 1,230
+/// leads`.
 pub fn describe_conversion_briefly(outcome: &CurveOutcome, measured: Option<&MeasuredConversion>) -> String {
     let conversion = format_range(&outcome.conversion, |value| percent(value, 0));
     let asked = if outcome.revenue_per_lead.is_none() { " ask for an offer" } else { "" };

@@ -11,7 +11,8 @@ pub struct FigureChange {
     pub unusualness: f64,
     /// Size of the figure's random variation, in the unit of the figure.
     pub noise: f64,
-    /// Number of weeks since a change in this direction was at least as large; `None` if no earlier change was as large.
+    /// Number of weeks since a change in this direction was at least as large; `None` if no earlier change was as
+    /// large.
     pub weeks_since_larger: Option<usize>,
     /// Number of weekly changes before this one.
     pub earlier_changes: usize,

@@ -115,13 +115,13 @@ pub struct PlanFit {
 pub struct LeadFlow {
     /// Total number of leads.
     pub leads: u32,
-    /// Number of leads that arrived through channels.
+    /// Number of leads whom channels brought.
     pub channel_leads: u32,
-    /// Number of leads by word of mouth.
+    /// Number of leads whom word of mouth brought.
     pub word_of_mouth: u32,
-    /// Number of leads that are enterprises and requested an offer.
+    /// Number of enterprises that requested an offer.
     pub requests: u32,
-    /// Number of individuals who signed up, or number of enterprises that accepted their first deal.
+    /// Number of individuals who signed up, or of enterprises that accepted their first deal.
     pub signups: u32,
 }
 
@@ -134,17 +134,17 @@ pub struct Fit {
     pub level: u8,
     /// Largest relative error of the estimates at this study level.
     pub max_relative_error: f64,
-    /// Day of the estimates of required quality and budget.
+    /// Day for which required quality and budget are estimated.
     pub study_day: u32,
     /// Number of days since `study_day`.
     pub age_days: u32,
     /// Mean required quality of the group at low prices. Required quality rises with the price.
     pub floor: TrueValueRange,
-    /// Mean budget: dollars per month for individuals, dollars per seat per month for enterprises.
+    /// Mean budget, dollars per month; for enterprises, per seat.
     pub budget: TrueValueRange,
-    /// Mean usage of an individual, or usage of the smallest enterprise, units per day.
+    /// Mean usage of an individual, or usage of the smallest enterprise; units per day.
     pub usage: TrueValueRange,
-    /// The plans that are compared with the group's requirements.
+    /// Prices, quality and quota of every plan.
     pub plans: ByPlan<PlanFit>,
     /// Leads of the last week; `None` before the first week.
     pub last_week: Option<LeadFlow>,

@@ -26,7 +26,7 @@ pub struct Funnel {
     pub usage: TrueValueRange,
     /// Estimated mean required quality of the group.
     pub floor: TrueValueRange,
-    /// Day of the estimate of required quality.
+    /// Day for which required quality is estimated.
     pub study_day: u32,
 }
 

@@ -28,9 +28,9 @@ pub struct AdResults {
 /// Lead costs of a channel and group with advertising in the last four weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeadCost {
-    /// The advertising channel.
+    /// Channel in which the ads run.
     pub channel: Channel,
-    /// The advertised group.
+    /// Group for which the ads run.
     pub group: Group,
     /// Results of the last four weeks.
     pub recent: AdResults,

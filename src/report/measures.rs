@@ -51,9 +51,9 @@ pub struct BehaviorMeasures {
     pub first_forecasts: Vec<ForecastScore>,
     /// Share of advertising spending on the truly best channels; `None` if the run is unfinished or has no advertising.
     pub truly_best: Option<TrueBestChannelSpend>,
-    /// Number and distribution of tool calls.
+    /// How many tool calls a player made, and how evenly they are distributed over the tools.
     pub tools: ToolUse,
-    /// Length and planning words of rationales.
+    /// Length of the rationales, and their planning words.
     pub planning: PlanningMeasures,
 }
 

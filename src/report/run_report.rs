@@ -25,7 +25,7 @@ pub struct Bankruptcy {
 /// Data of a run report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunReport {
-    /// Current state of the run.
+    /// State of the run on its current day.
     pub observation: Observation,
     /// Version of the program that recorded the run.
     pub version: String,
@@ -41,7 +41,7 @@ pub struct RunReport {
     pub forecasts: Vec<ScoredForecast>,
     /// Data from the tables and the ledger of the run.
     pub database: DatabaseFigures,
-    /// Decisions of the player by decision period.
+    /// What the player decided, by decision period.
     pub decision_periods: Vec<DecisionPeriod>,
     /// Notable days of the run.
     pub highlights: Vec<Highlight>,
@@ -51,13 +51,13 @@ pub struct RunReport {
     pub bankruptcy: Option<Bankruptcy>,
     /// Session rules of the run.
     pub rules: SessionRules,
-    /// Parent run and first difference, if the run is a branch.
+    /// Parent run and first different decision of a branch; `None` for other runs.
     pub origin: Option<BranchOrigin>,
 }
 
 impl RunReport {
-    /// Collects the data of a run up to the current day. Must not be called on the drawing thread, because it
-    /// queries the database.
+    /// Collects the data of a run up to the current day. Queries the database, so it must not be called on the thread
+    /// that draws the screen.
     pub fn from_session(session: &Session) -> RunReport {
         let seen = session.company().observe();
         let start_cash = session.manifest().cash;

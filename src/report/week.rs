@@ -1,5 +1,5 @@
-//! Weekly report: the cash change with its components, the most unusual changes in figures, decisions before the week,
-//! news, and the outcome of due forecasts.
+//! Weekly report: the cash change and its components, the most unusual changes in figures, decisions before the week,
+//! news, and the outcomes of due forecasts.
 
 use std::ops::Range;
 
@@ -26,20 +26,20 @@ pub struct MovedFigure {
     pub new: String,
     /// Whether the figure rose.
     pub is_increase: bool,
-    /// Whether the change is favorable for the company; `None` if a rise can be good or bad for the company.
+    /// Whether the change is favorable for the company; `None` if a rise can be either good or bad.
     pub is_favorable: Option<bool>,
     /// Whether the figure is a share from 0 to 1.
     pub is_share: bool,
     /// Comparison with the changes of earlier weeks.
     pub change: FigureChange,
-    /// Changes by ledger category that add up to the change of the figure, largest first. Empty if the figure is not
-    /// from the ledger.
+    /// Changes by ledger category that add up to the change of the figure, largest first; empty if the figure does not
+    /// come from the ledger.
     pub category_changes: Vec<(&'static str, f64)>,
 }
 
 impl MovedFigure {
-    /// Formats the size of the change: in percentage points for shares, otherwise in percent of the previous
-    /// value. Returns `None` if the previous value was 0.
+    /// Formats the size of the change: for shares in percentage points, otherwise in percent of the previous value.
+    /// Returns `None` if the previous value was 0.
     pub fn format_size(&self) -> Option<String> {
         let (old, new) = (self.change.old, self.change.new);
         if self.is_share {
@@ -60,15 +60,15 @@ impl MovedFigure {
 pub struct WeekReport {
     /// Figures of the reported week.
     pub week: WeekFigures,
-    /// Lengths of this week and the previous week; `None` if the lengths are equal. The last week of a run
-    /// can be short.
+    /// Describes the lengths of this week and the previous week; `None` if they are equal. The last week of a run can
+    /// be short.
     pub short_week_note: Option<String>,
     /// Amounts by ledger category that add up to the cash change: income first, then costs from the largest.
     pub cash_components: Vec<(&'static str, f64)>,
     /// Changed figures, starting with the most unusual change.
     pub moved_figures: Vec<MovedFigure>,
-    /// Descriptions of changed settings with old and new values, the largest amounts of money first, then of purchases,
-    /// posts and offers.
+    /// Descriptions of changed settings, with old and new values and the largest amounts of money first; then
+    /// descriptions of purchases, posts and offers.
     pub decisions: Vec<String>,
     /// Forecasts for the last day of the week, shortest horizon first.
     pub due_forecasts: Vec<ScoredForecast>,
@@ -85,7 +85,7 @@ pub struct WeekReport {
 /// A figure of the report: name, function that reads the value, unit, whether higher is better, and ledger categories.
 struct FigureRow(&'static str, fn(&WeekFigures) -> f64, WeekFigureUnit, Option<bool>, &'static [Category]);
 
-/// Unit of a figure, which determines its format and random variation.
+/// Unit of a figure, which determines its format and its random variation.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum WeekFigureUnit {
     Dollars,
@@ -111,7 +111,7 @@ impl WeekFigureUnit {
         matches!(self, WeekFigureUnit::ShareOfLeads | WeekFigureUnit::Share)
     }
 
-    /// Returns the random variation of a weekly value. For amounts in dollars, returns an amount that is insignificant
+    /// Returns the random variation of a weekly value. For dollars, returns the largest amount that is insignificant
     /// for the company.
     fn noise(self, value: f64, week: &WeekFigures) -> f64 {
         match self {
@@ -192,7 +192,7 @@ const FIGURES: [FigureRow; 14] = [
     FigureRow("open issues", |week| f64::from(week.open_issues), WeekFigureUnit::Count, Some(false), &[]),
 ];
 
-/// Data from which a weekly report is computed.
+/// What a weekly report is computed from.
 pub struct WeekReportInput<'a> {
     /// Figures of every simulated week.
     pub weeks: &'a [WeekFigures],
@@ -200,8 +200,7 @@ pub struct WeekReportInput<'a> {
     pub decisions: &'a [Decisions],
     /// Journal with all actions of the run.
     pub journal: &'a [JournalEntry],
-    /// Publication days of customers' posts, of comments on the company's posts, and of news items, in this
-    /// order.
+    /// Publication days of customers' posts, of comments on the company's posts, and of news items, in this order.
     pub posts: [&'a [u32]; 3],
 }
 
@@ -211,8 +210,8 @@ impl WeekReport {
         let has_authors = session.params().fidelity.interface == Interface::Release1;
         let mut posts: [Vec<u32>; 3] = Default::default();
         for post in session.company().posts() {
-            // News items have no customer group. In release 2, the authors of posts are not published, so
-            // customers' posts and news items are counted together.
+            // News items have no customer group. Release 2 does not publish the authors of posts, so customers' posts
+            // and news items are counted together.
             let kind = match (post.own_post, &post.written_by) {
                 (Some(_), _) => 1,
                 (None, None) if has_authors => 2,
@@ -254,20 +253,20 @@ impl WeekReport {
         self.limit_days.contains(&(self.week.day - self.week.days_run.min(self.week.day)))
     }
 
-    /// Returns whether this forecast was filed automatically because a time limit was reached.
+    /// Returns whether a forecast was filed automatically because a time limit was reached.
     pub fn was_forecast_filed_at_limit(&self, forecast: &ScoredForecast) -> bool {
         self.limit_days.contains(&forecast.day)
     }
 }
 
-/// Describes the lengths of the last two weeks if the lengths differ.
+/// Describes the lengths of the last two weeks; `None` if they are equal.
 fn describe_unequal_weeks(weeks: &[WeekFigures]) -> Option<String> {
     let [.., before, week_figures] = weeks else { return None };
     describe_short_week(week_figures.days_run, before.days_run)
 }
 
-/// Returns the decision day of a week that was filed automatically at a time limit, or `None` if the journal
-/// entry is a different one.
+/// Returns the decision day of a week that was filed automatically at a time limit, or `None` if the journal entry is
+/// not about such a week.
 fn day_filed_at_limit(entry: &JournalEntry) -> Option<u32> {
     match entry {
         JournalEntry::Advance { day, rationale, filled_naively: [true, true, true, true], .. }
@@ -289,8 +288,8 @@ fn cash_components(booked: &CategoryTotals) -> Vec<(&'static str, f64)> {
     parts
 }
 
-/// Describes the decisions of a range of days: the decisions before a week, and the decisions between its
-/// days if the days were run one by one.
+/// Describes the decisions in a range of days: those before a week and, if its days were run one by one, those between
+/// the days.
 fn describe_decisions(sources: &WeekReportInput<'_>, days: Range<u32>) -> Vec<String> {
     let found = sources.decisions.iter().filter(|decided| days.contains(&decided.day));
     found
@@ -311,7 +310,8 @@ fn moved_figures(sources: &WeekReportInput<'_>, week: &WeekFigures) -> Vec<Moved
         let movement = last_change(&series, noise)?;
         let up = movement.new > movement.old;
         let (old, new) = (unit.format(movement.old), unit.format(movement.new));
-        // A figure counts as unchanged if its displayed value is unchanged, or if it changed by less than one thousandth.
+        // A figure counts as unchanged if its displayed value is the same, or if it changed by less than one
+        // thousandth.
         let moved = old != new && movement.relative_size() >= 0.001;
         moved.then(|| MovedFigure {
             name,

@@ -60,7 +60,8 @@ pub fn goal_and_rules(of: &PageContext<'_>) -> String {
     whole.split_once(HOW_TO_CALL).map_or(whole.as_str(), |(before, _)| before).trim_end().to_owned()
 }
 
-/// Writes the instructions and the documentation to a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`, `tables.json`.
+/// Writes the instructions and the documentation to a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`,
+/// `tables.json`.
 ///
 /// # Errors
 /// The folder cannot be written.

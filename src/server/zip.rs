@@ -116,7 +116,8 @@ impl Entry {
         let extras = names + length(28)?;
         let end = extras + length(30)?;
         let name = bytes.get(names..extras)?;
-        // Sizes and offsets that are too large for their 32-bit fields are stored in the 64-bit extra field, in this order.
+        // Sizes and offsets that are too large for their 32-bit fields are stored in the 64-bit extra field, in this
+        // order.
         let mut large = extra_64(bytes.get(extras..end)?).chunks_exact(8);
         let mut field = |field: usize| -> Option<u64> {
             match u32_at(bytes, at + field)? {

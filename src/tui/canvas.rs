@@ -18,11 +18,11 @@ pub struct CommandId(pub u16);
 /// What a click on an area does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Click {
-    /// A command to execute.
+    /// Executes a command.
     Command(CommandId),
-    /// A pane that receives the focus, by its number on the screen.
+    /// Focuses a pane, given by its number on the screen.
     Pane(usize),
-    /// A row of a pane, by the number of the pane and the number of the row.
+    /// Selects a row of a pane, given by the numbers of the pane and the row.
     Row(usize, usize),
 }
 
@@ -30,7 +30,7 @@ pub enum Click {
 pub struct Canvas<'a> {
     /// Cells of the frame.
     pub buffer: &'a mut Buffer,
-    /// Colors by role.
+    /// Theme from which roles get their styles.
     pub theme: &'a Theme,
     /// Clickable areas of the frame. Later areas cover earlier areas.
     pub clicks: Vec<(Rect, Click)>,

@@ -55,7 +55,7 @@ pub enum BreakpointCommand {
     Set(Condition),
     /// Removes a breakpoint by number.
     Remove(u32),
-    /// Lists the days on which each condition became true or false.
+    /// Shows for each condition whether it is true, and since which day.
     History,
 }
 

@@ -58,7 +58,7 @@ pub use background::answer_on_thread;
 pub enum Job {
     /// Execute a user's request.
     Execute(Request),
-    /// Move the playback to this target. Setting the flag stops the seek.
+    /// Seek to this position of the playback. Setting the flag stops the seek.
     Seek(SeekTarget, Arc<AtomicBool>),
     /// Show the next week of the playback after this pause.
     ScheduleNextWeek(Duration),

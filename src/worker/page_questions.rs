@@ -13,7 +13,7 @@ use novamind_session::Preview;
 use novamind_session::identifiers::Group;
 use novamind_tools::{Rejection, ToolId};
 
-/// A question for the expected effect of a tool call, without executing the call.
+/// A question for the preview of a tool call, which describes its effects without executing it.
 #[derive(Debug, Clone)]
 pub struct PreviewCallQuestion {
     /// Tool whose call is previewed.
@@ -49,7 +49,7 @@ impl Question for CurveQuestion {
     }
 }
 
-/// A question for the curve of a group as market studies estimate it. Panes that always show the curve ask it: the
+/// A question for the curve of a group as market studies estimate it. For panes that show the curve automatically: the
 /// answer reveals no hidden state and is not recorded.
 #[derive(Debug, Clone)]
 pub struct EstimatedCurveQuestion(pub Group);

@@ -84,8 +84,8 @@ impl Class {
     /// Creates the folder of a class with `class.toml` and a handout for every student.
     ///
     /// # Errors
-    /// Returns an error if the folder already contains a class or cannot be written, if `students` is not from 1 to 999, or if
-    /// the run cannot be handed out.
+    /// Returns an error if the folder already contains a class or cannot be written, if `students` is not from 1 to
+    /// 999, or if the run cannot be handed out.
     pub fn create(folder: &Path, what: &HandoutSource, students: u32) -> Result<Class, RunError> {
         if !(1..=MAX_STUDENTS).contains(&students) {
             let message = format!("a class needs 1 to {MAX_STUDENTS} students, not {students}");

@@ -52,7 +52,8 @@ impl ClassCollection {
     /// with the number of processed runs and the total number of runs.
     ///
     /// # Errors
-    /// Returns an error if the folder cannot be read or written, or if the reference play of the lesson cannot be simulated.
+    /// Returns an error if the folder cannot be read or written, or if the reference play of the lesson cannot be
+    /// simulated.
     pub fn collect(
         sources: &CollectionInput<'_>,
         answers: RuleEvaluator,

@@ -184,7 +184,8 @@ impl Handout {
             return Ok(run);
         }
         let folder = runs.join(&self.stamp.run);
-        // If the program ended before it wrote the first event, the folder contains none of these files and can be reused.
+        // If the program ended before it wrote the first event, the folder contains none of these files and can be
+        // reused.
         if ["run.toml", "trajectory.jsonl"].iter().any(|file| folder.join(file).exists()) {
             return Err(RunError::AlreadyExists(format!(
                 "{} exists but does not belong to this handout. Nothing was changed. Move the folder away and open the handout \

@@ -26,8 +26,8 @@ impl HandoutRun {
     /// Reads and verifies a run to hand out.
     ///
     /// # Errors
-    /// Returns an error if the run is damaged, is an unfinished baseline run, belongs to a study or a lesson, has no day left,
-    /// or has a language model as judge.
+    /// Returns an error if the run is damaged, is an unfinished baseline run, belongs to a study or a lesson, has no
+    /// day left, or has a language model as judge.
     pub(super) fn from_folder(folder: &Path) -> Result<HandoutRun, RunError> {
         let manifest = ManifestCheck::read(folder)?.manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;

@@ -10,8 +10,8 @@ use novamind_tools::Rejection;
 /// question with choices, the number of the choice, counted from 1.
 ///
 /// # Errors
-/// `no_question` if no question is open, `guess_not_possible` if `value` is not finite or not the number of a choice, `run_over`,
-/// `not_saved`.
+/// `no_question` if no question is open, `guess_not_possible` if `value` is not finite or not the number of a choice,
+/// `run_over`, `not_saved`.
 pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> {
     let awaits =
         |step: &usize| session.lesson().is_some_and(|lesson_progress| lesson_progress.awaits_guess(*step));

@@ -366,7 +366,8 @@ impl FinishedPart {
         DecisionComparison::Different(FirstDifference { week: before + 1, day, decisions, effect })
     }
 
-    /// Returns whether tool calls of later weeks refer to customers by number. These numbers depend on earlier decisions.
+    /// Returns whether tool calls of later weeks refer to customers by number. These numbers depend on earlier
+    /// decisions.
     fn refers_to_customers_after(&self, week: u32) -> bool {
         let later = self
             .calls

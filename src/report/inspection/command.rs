@@ -169,8 +169,8 @@ impl InspectionCommand {
     /// Executes the command and records the inspection or the change.
     ///
     /// # Errors
-    /// Returns the errors of [`Inspector::find_condition_days`], [`Inspector::figure_writes`], [`Inspector::compare_days`],
-    /// [`CompanyView::debug_parameters`] and [`Session::set_parameter`].
+    /// Returns the errors of [`Inspector::find_condition_days`], [`Inspector::figure_writes`],
+    /// [`Inspector::compare_days`], [`CompanyView::debug_parameters`] and [`Session::set_parameter`].
     ///
     /// [`CompanyView::debug_parameters`]: novamind_session::CompanyView::debug_parameters
     /// [`Inspector::find_condition_days`]: novamind_insight::Inspector::find_condition_days

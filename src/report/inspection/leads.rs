@@ -45,7 +45,8 @@ pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)])
     clean_up_numbers(lines)
 }
 
-/// Formats the lead equation of a day: `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, actual 104 (p 0.56)`.
+/// Formats the lead equation of a day: `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, actual 104 (p
+/// 0.56)`.
 fn format_equation(lead_equation: &LeadEquation) -> String {
     let factors = LeadFactor::ALL.map(|factor| format!("{factor} {:.4}", lead_equation.factor(factor)));
     let mut sources: Vec<String> =

@@ -14,9 +14,9 @@ pub const HEAT_MARKS: [&str; 4] = ["░", "▒", "▓", "█"];
 pub struct SpilloverMap {
     /// Heading of the map, with the day.
     pub heading: String,
-    /// Target groups, one for each column.
+    /// Target groups, one per column.
     pub targets: Vec<Group>,
-    /// Rows of the map, one for each source group.
+    /// Rows of the map, one per source group.
     pub rows: Vec<SpilloverRow>,
     /// Notes below the map, such as those on dropped changes.
     pub notes: Vec<String>,

@@ -1,7 +1,7 @@
 //! Logbook of a run for researchers: times, screens, queries and tool calls by week.
 //!
-//! The logbook is derived from the lines of the trajectory and from the replayed run. Only [`BehaviorMeasures::truly_best`]
-//! uses hidden state, and only for finished runs.
+//! The logbook is derived from the lines of the trajectory and from the replayed run. Only
+//! [`BehaviorMeasures::truly_best`] uses hidden state, and only for finished runs.
 
 mod effort;
 mod summary;

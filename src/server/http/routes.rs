@@ -250,7 +250,8 @@ pub(super) fn to_http_response(answer: &ApiResponse) -> Response {
     response
 }
 
-/// Closes the connection after the response. Otherwise, the server would read the unread rest of the body as the next request.
+/// Closes the connection after the response. Otherwise, the server would read the unread rest of the body as the next
+/// request.
 fn close_connection(mut response: Response) -> Response {
     response.headers_mut().insert(header::CONNECTION, header::HeaderValue::from_static("close"));
     response

@@ -1,4 +1,5 @@
-//! Reports an error to a client whose run cannot be opened. Without this error, the client would only see a closed connection.
+//! Reports an error to a client whose run cannot be opened. Without this error, the client would only see a closed
+//! connection.
 
 use std::io::{BufRead, IsTerminal, Write, stdin, stdout};
 

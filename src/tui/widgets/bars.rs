@@ -11,7 +11,7 @@ pub const SERIES_SYMBOLS: [&str; 4] = ["█", "▒", "━", "•"];
 
 /// A bar with its name and value.
 pub struct Bar<'a> {
-    /// Name of the item, or an empty text if the row above shows the same item.
+    /// Name of the item; empty if the row above belongs to the same item.
     pub name: &'a str,
     /// Alignment of the name. Names that are numbers are right-aligned.
     pub name_align: Align,

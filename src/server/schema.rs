@@ -36,7 +36,7 @@ pub fn specs() -> impl Iterator<Item = &'static ToolSpec> {
     CATALOGUE.iter().map(|tool| tool.spec())
 }
 
-/// Returns the JSON Schema of a tool's arguments, by argument name.
+/// Returns the JSON Schema of a tool's arguments.
 pub fn arguments_schema(spec: &ToolSpec, numbers: &ParameterNumbers) -> Map<String, Value> {
     let property = |argument: &Argument| {
         let schema = match (spec.id, argument.name) {

@@ -55,7 +55,7 @@ const REQUIRED_COLUMNS: [&str; 2] = ["run", "participant"];
 /// Anonymized tables, and the links to the original runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnonymizedTables {
-    /// The anonymized tables.
+    /// All tables of the input, with new names and without identifying columns.
     pub tables: Vec<NamedTable>,
     /// Old and new name of every run, for the experimenter only.
     pub links: Vec<RunLink>,

@@ -52,7 +52,7 @@ pub struct CollectionResult {
     pub tables: StudyTables,
     /// Label, seal and path of the archive of each collected run.
     pub runs: Vec<(Option<String>, Seal, PathBuf)>,
-    /// Warnings for the experimenter.
+    /// Problems for the experimenter to check, such as unreadable files.
     pub notes: Vec<CollectNote>,
     /// Number of participants who visited the study, for each outcome.
     pub visits: VisitSummary,

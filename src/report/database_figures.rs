@@ -35,7 +35,7 @@ const OUTAGE_SQL: &str =
 /// Advertising results of one channel for one group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChannelRow {
-    /// ID of the group.
+    /// ID of the advertised group.
     pub group: String,
     /// Name of the channel.
     pub channel: String,
@@ -48,7 +48,7 @@ pub struct ChannelRow {
 /// Leads, subscriptions and revenue of a group over the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroupHistory {
-    /// Customer group whose history is described.
+    /// Group to which the other fields refer.
     pub group: Group,
     /// Number of leads over the whole run.
     pub leads: f64,

@@ -12,9 +12,9 @@ use novamind_tools::ToolId;
 /// before the others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DecisionPeriod {
-    /// Number of the first week.
+    /// First week of the period, counted from 1.
     pub week: u32,
-    /// Number of the last week.
+    /// Last week of the period, counted from 1.
     pub last_week: u32,
     /// Day on which the player decided, before the first week.
     pub day: u32,

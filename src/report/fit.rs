@@ -130,7 +130,7 @@ pub struct LeadFlow {
 pub struct Fit {
     /// Customer group whose requirements are compared with the plans.
     pub group: Group,
-    /// Study level of the group.
+    /// Study level of the group, which determines the precision of the estimates.
     pub level: u8,
     /// Largest relative error of the estimates at this study level.
     pub max_relative_error: f64,

@@ -8,9 +8,9 @@ use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session};
 /// How many enterprises of a group reached each stage of the sales funnel, over the whole run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Funnel {
-    /// Enterprise group whose funnel is described.
+    /// Enterprise group to which the other fields refer.
     pub group: Group,
-    /// Number of enterprises that arrived.
+    /// Number of enterprises that arrived, whether or not they requested an offer.
     pub enterprises: u32,
     /// Number of enterprises that requested an offer. The remaining enterprises found no plan with sufficient quality.
     pub requests: u32,

@@ -20,7 +20,7 @@ pub const SETTINGS_JUDGED_BY_LEADS: [ToolId; 4] =
 pub struct MeasuredConversion {
     /// Number of individuals who signed up, or number of enterprises that requested an offer.
     pub taken: u32,
-    /// Number of leads.
+    /// Number of leads that arrived in the measured weeks.
     pub leads: u32,
     /// First and last measured week; `None` before the first week.
     pub weeks: Option<(u32, u32)>,

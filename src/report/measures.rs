@@ -12,7 +12,7 @@ use novamind_session::{
     Decisions, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, submitted_forecasts,
 };
 
-/// Words that indicate planning.
+/// Words that count as signs of planning in rationales and notes.
 pub const PLANNING_WORDS: [&str; 16] = [
     "if",
     "unless",
@@ -37,7 +37,7 @@ pub const PLANNING_WORDS: [&str; 16] = [
 pub struct BehaviorMeasures {
     /// Number of days that the company has survived.
     pub survival_days: u32,
-    /// Final or current cash, dollars.
+    /// Cash on the last simulated day, dollars.
     pub cash: f64,
     /// Share of advertising spending on the best channel of each group; `None` without advertising.
     pub channels: Option<BestTriedChannelSpend>,
@@ -90,7 +90,7 @@ pub const MIN_CHANNEL_LEADS: f64 = 3.0;
 /// The channel with the most leads per dollar for a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BestChannel {
-    /// Name of the best channel.
+    /// Name of the channel with the most leads per dollar.
     pub channel: String,
     /// Number of leads per thousand dollars spent on this channel.
     pub leads_per_thousand: f64,
@@ -278,7 +278,7 @@ pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
 /// Mean length of rationales, and mean number of their planning words.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct PlanningMeasures {
-    /// Number of rationales.
+    /// Number of submitted rationales.
     pub rationales: u32,
     /// Mean number of words per rationale.
     pub words_each: f64,

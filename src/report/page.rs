@@ -52,7 +52,7 @@ pub enum Block {
 pub struct NamedValue {
     /// Name of the value.
     pub name: String,
-    /// Formatted value.
+    /// Value as text, with its unit.
     pub value: String,
     /// Explanation or reference value; can be empty.
     pub note: String,
@@ -79,7 +79,7 @@ pub struct Table {
 pub struct Bar {
     /// Name of the bar.
     pub name: String,
-    /// Formatted value of the bar.
+    /// Value as text, shown at the end of the bar.
     pub value_text: String,
     /// Length of the bar as a share of the longest possible bar, from 0 to 1.
     pub share: f64,
@@ -96,7 +96,7 @@ pub struct Chart {
     pub summary: String,
     /// Label of the horizontal axis, such as its unit.
     pub x_label: &'static str,
-    /// Whether values are dollars.
+    /// Whether values are dollars, which determines the labels of the vertical axis.
     pub is_in_dollars: bool,
     /// Limits of the vertical axis, for charts with outliers that would flatten the other values.
     pub y_limits: Option<(f64, f64)>,
@@ -104,12 +104,12 @@ pub struct Chart {
     pub plot: Plot,
 }
 
-/// Data of a chart.
+/// What a chart draws.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Plot {
     /// Lines, and optionally a shaded interval.
     Lines {
-        /// Lines of the chart.
+        /// Lines in the order of the legend.
         curves: Vec<Curve>,
         /// Shaded interval behind the lines, if any.
         band: Option<Band>,
@@ -118,7 +118,7 @@ pub enum Plot {
     Stacks {
         /// Position of each bar on the horizontal axis.
         positions: Vec<f64>,
-        /// Series of values that are stacked.
+        /// Series from the zero line outward, in the order of the legend.
         series: Vec<StackSeries>,
     },
 }

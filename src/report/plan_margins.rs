@@ -170,7 +170,7 @@ fn by_plan(rows: &QueryResult, read: impl Fn(&[Cell]) -> PlanUsage) -> Vec<(Grou
 pub struct DraftPlanTerms {
     /// List price, dollars per seat per month.
     pub price: f64,
-    /// Model tier of the plan.
+    /// Model tier that serves the plan.
     pub tier: u8,
     /// Quota, units per customer per day.
     pub quota: f64,

@@ -5,10 +5,10 @@ use unicode_width::UnicodeWidthStr;
 use super::formatting::format_tick;
 use novamind_base::formatting::compact_number;
 
-/// Scale of an axis.
+/// How values are mapped to positions on an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AxisScale {
-    /// Linear scale.
+    /// Positions are proportional to values.
     Linear,
     /// Linear scale with labels only at whole numbers, for days and weeks.
     Whole,

@@ -12,9 +12,9 @@ use novamind_session::{Generation, Observation};
 /// The published results, from a bundled file.
 #[derive(Debug, Deserialize)]
 pub struct PublishedResults {
-    /// Cash on day 0, dollars.
+    /// Cash of the published runs on day 0, dollars.
     pub start_cash: f64,
-    /// Cash of the rule-based policy, dollars.
+    /// Final cash of the published rule-based policy, dollars.
     pub rule_based_baseline: f64,
     /// Estimated cash of a perfect player, dollars.
     pub estimated_upper_bound: f64,
@@ -29,7 +29,7 @@ pub struct PublishedResults {
 pub struct PublishedTable {
     /// Short name of the table: `paper` or `site`.
     pub name: String,
-    /// Source of the results.
+    /// Publication that contains the results.
     pub source: String,
     /// Date on which the table was published or, for a table that changes with time, copied.
     pub date: String,
@@ -44,10 +44,10 @@ pub struct PublishedTable {
 /// Generation of the released simulator to which a published result belongs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 pub enum PublishedGeneration {
-    /// Release 1.
+    /// Rules of release 1.
     #[serde(rename = "release 1")]
     Release1,
-    /// Release 2.
+    /// Rules of release 2.
     #[serde(rename = "release 2")]
     Release2,
     /// The source does not state the generation, and its date is not sufficient to determine it.
@@ -83,13 +83,13 @@ pub struct PublishedAgent {
     pub name: String,
     /// Number of the agent's runs that ended with cash below zero.
     pub bankruptcies: u32,
-    /// Number of the agent's runs.
+    /// Number of runs that the agent played.
     pub runs: u32,
     /// Final cash of the agent's best run, dollars.
     pub best_cash: f64,
-    /// Longest survival of a run, days.
+    /// Survival of the agent's longest run, days.
     pub max_survival_days: f64,
-    /// Mean survival of a run, days.
+    /// Mean survival over the agent's runs, days.
     pub mean_survival_days: f64,
     /// Population standard deviation of survival over all runs, days.
     pub std_survival_days: f64,
@@ -192,18 +192,18 @@ pub enum ResultOrigin {
     Agent,
     /// The published rule-based baseline.
     Baseline,
-    /// The run that is ranked.
+    /// The run for which the ranking is computed.
     ThisRun,
 }
 
 /// A ranked result with its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RankedResult {
-    /// Name of the player or agent.
+    /// Name that the ranking shows.
     pub name: String,
-    /// Cash at the end, dollars.
+    /// Final cash, dollars.
     pub cash: f64,
-    /// Origin of the result.
+    /// Where the result comes from.
     pub origin: ResultOrigin,
     /// Last day of the run; `None` if it is not published.
     pub horizon_days: Option<u32>,

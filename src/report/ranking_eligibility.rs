@@ -26,7 +26,7 @@ const COMPARABLE_SCENARIOS: [&str; 3] = [DEFAULT_SCENARIO, "reference-seed42", "
 /// Properties that decide whether a run can be ranked among the published results.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankingCriteria<'a> {
-    /// Last day of the run.
+    /// Planned last day of the run.
     pub days: u32,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
@@ -34,7 +34,7 @@ pub struct RankingCriteria<'a> {
     pub horizon_rule: HorizonRule,
     /// Generation of the released simulator whose rules the run has.
     pub generation: Generation,
-    /// Name of the scenario.
+    /// Name of the scenario. Runs can be ranked only in scenarios with unchanged rules.
     pub scenario: &'a str,
     /// Whether the parameters differ from the bundled scenario of the same name, or did on some days.
     pub has_changed_parameters: bool,

@@ -22,7 +22,7 @@ pub struct Bankruptcy {
     pub turning_points: Vec<String>,
 }
 
-/// Data of a run report.
+/// All data from which a run report is formatted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunReport {
     /// State of the run on its current day.
@@ -43,13 +43,13 @@ pub struct RunReport {
     pub database: DatabaseFigures,
     /// What the player decided, by decision period.
     pub decision_periods: Vec<DecisionPeriod>,
-    /// Notable days of the run.
+    /// Notable days of the run, sorted by day.
     pub highlights: Vec<Highlight>,
     /// Behavior measures of the run.
     pub measures: BehaviorMeasures,
     /// Analysis of the bankruptcy; `None` if the company is not bankrupt.
     pub bankruptcy: Option<Bankruptcy>,
-    /// Session rules of the run.
+    /// Session rules, which can hide results and scores.
     pub rules: SessionRules,
     /// Parent run and first different decision of a branch; `None` for other runs.
     pub origin: Option<BranchOrigin>,

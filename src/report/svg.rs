@@ -31,7 +31,7 @@ const REPORT_AXES: AxisScales = AxisScales { x: AxisScale::Whole, y: AxisScale::
 
 /// A chart of a self-contained file, and the scales of its axes.
 pub struct ScaledChart {
-    /// Chart to draw.
+    /// Content, title and labels of the chart.
     pub chart: Chart,
     /// Scales of the chart's axes.
     pub axes: AxisScales,

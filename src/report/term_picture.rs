@@ -34,7 +34,7 @@ pub struct VisibleFigures<'a> {
 /// A picture that illustrates a glossary term.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermPicture {
-    /// Caption of the picture.
+    /// Sentence that explains what the picture shows.
     pub caption: String,
     /// The drawing; `None` if the run has no figures for it yet.
     pub drawing: Option<TermDrawing>,
@@ -43,13 +43,13 @@ pub struct TermPicture {
 /// Drawing of a picture as lines or bars.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TermDrawing {
-    /// Lines in a chart with axes.
+    /// Lines, points and a band in a chart with axes.
     Lines(TermLines),
     /// Bars with a name and an amount.
     Bars(Vec<(String, f64)>),
 }
 
-/// Lines in a chart with axes.
+/// Lines, points and a band in a chart with axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermLines {
     /// Name and points of each line. A line without a name has an empty one.

@@ -18,11 +18,11 @@ use novamind_session::{
 /// A figure that changed over the week.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MovedFigure {
-    /// Name of the figure that changed.
+    /// Name of the figure, as reports show it.
     pub name: &'static str,
-    /// Formatted value of the previous week.
+    /// Value of the previous week, as text with its unit.
     pub old: String,
-    /// Formatted value of the week.
+    /// Value of the reported week, as text with its unit.
     pub new: String,
     /// Whether the figure rose.
     pub is_increase: bool,
@@ -72,11 +72,11 @@ pub struct WeekReport {
     pub decisions: Vec<String>,
     /// Forecasts for the last day of the week, shortest horizon first.
     pub due_forecasts: Vec<ScoredForecast>,
-    /// Number of customers' posts.
+    /// Number of customers' posts in the week.
     pub customer_posts: u32,
     /// Number of comments on the company's posts.
     pub comments: u32,
-    /// Number of news items.
+    /// Number of news items in the week.
     pub news_items: u32,
     /// Decision days of the weeks that were filed automatically because a time limit was reached.
     limit_days: Vec<u32>,

@@ -18,7 +18,7 @@ pub struct CauseLine {
     pub name: &'static str,
     /// Contribution of the cause to the change, in the unit of the figure.
     pub amount: f64,
-    /// Formatted contribution with its sign.
+    /// Contribution as text, with its sign and unit.
     pub amount_text: String,
     /// Inputs of the cause that differ between the two weeks, with their old and new values.
     pub details: Vec<String>,

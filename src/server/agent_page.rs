@@ -23,13 +23,13 @@ const ERRORS: &str = include_str!("../../assets/agent/errors.md");
 /// Heading of the section that follows the goal, the calendar and the rules.
 const HOW_TO_CALL: &str = "## How to call";
 
-/// File name of the instructions.
+/// File to which the instructions are written.
 const PAGE_FILE: &str = "AGENT.md";
 
 /// Data of the run that a page describes.
 #[derive(Debug, Clone)]
 pub struct PageContext<'a> {
-    /// Last day of the run.
+    /// Planned last day of the run.
     pub days: u32,
     /// Cash on day 0, in dollars.
     pub cash: f64,

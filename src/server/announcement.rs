@@ -17,7 +17,7 @@ pub struct Announcement {
     /// Port on 127.0.0.1. `None` if the server uses standard input and output, so that no other process can connect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub port: Option<u16>,
-    /// Process id of the server.
+    /// Process id of the server, for messages to the user.
     pub pid: u32,
     /// File with the token that requests must include, if a token is required.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -22,7 +22,7 @@ const CALL_PREFIX: &str = "call:";
 pub struct ReleaseHistory {
     /// Executable entries in the order of the file.
     pub entries: Vec<HistoryEntry>,
-    /// Lines that are not executed.
+    /// Lines that are not executed, with the reason.
     pub skipped: Vec<LineRemark>,
 }
 
@@ -31,7 +31,7 @@ pub struct ReleaseHistory {
 pub struct HistoryEntry {
     /// Number of the line, counted from 1.
     pub line: usize,
-    /// ID of the request.
+    /// Request ID that the client sent.
     pub request_id: String,
     /// Name of the tool in this program.
     pub tool: &'static str,

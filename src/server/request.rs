@@ -29,7 +29,7 @@ pub enum ApiRequest {
     },
     /// Request to submit a rationale and forecasts and to simulate a week.
     NextWeek {
-        /// Rationale of the week.
+        /// Rationale of the week, not yet validated.
         rationale: Value,
         /// Forecasts of cash for four horizons.
         predictions: Value,
@@ -166,11 +166,11 @@ fn error_text(message: &str, results: &Value) -> String {
 pub enum ResponseStatus {
     /// The request succeeded, or a tool rejected the call.
     Done,
-    /// The request is malformed.
+    /// The request is malformed, or a statement, week or script was rejected.
     BadRequest,
     /// The token is missing or wrong.
     Unauthorized,
-    /// The request is not allowed.
+    /// The request is forbidden, for example because a web page sent it.
     Forbidden,
     /// The route, tool or script named by the request does not exist.
     NotFound,

@@ -28,7 +28,7 @@ pub enum Click {
 
 /// A frame that is being drawn.
 pub struct Canvas<'a> {
-    /// Cells of the frame.
+    /// Cells into which the frame is drawn.
     pub buffer: &'a mut Buffer,
     /// Theme from which roles get their styles.
     pub theme: &'a Theme,

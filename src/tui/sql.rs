@@ -8,15 +8,15 @@ use crate::theme::Role;
 /// The kind of a SQL token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TokenKind {
-    /// A keyword.
+    /// One of [`KEYWORDS`], in upper or lower case.
     Keyword,
     /// A plain or quoted identifier.
     Identifier,
     /// A string in single quotes.
     StringLiteral,
-    /// A number.
+    /// A number, possibly incomplete.
     Number,
-    /// A comment.
+    /// A comment of one or several lines.
     Comment,
     /// Any other character that is not white space.
     Symbol,
@@ -38,7 +38,7 @@ impl TokenKind {
 /// A SQL token with its byte range.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Token {
-    /// The kind of the token.
+    /// What the token is, which determines its color.
     pub kind: TokenKind,
     /// The byte range of the token in the text.
     pub range: Range<usize>,

@@ -6,9 +6,9 @@ use serde::Deserialize;
 /// The role of a text or symbol on the screen, which determines its style.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// Ordinary text.
+    /// Text without a special role.
     Text,
-    /// Less important text.
+    /// Text that is less important than the text around it.
     Dim,
     /// Emphasized text.
     Strong,
@@ -32,7 +32,7 @@ pub enum Role {
     Good,
     /// Deteriorations, unfavorable values and errors.
     Bad,
-    /// Text that requires attention.
+    /// Values and messages that require attention.
     Warning,
     /// Column headings.
     Header,
@@ -110,7 +110,7 @@ struct ThemeFile {
 /// A color theme: the styles of all roles.
 #[derive(Debug, Clone)]
 pub struct Theme {
-    /// Name of the theme.
+    /// Name of the theme file, without extension.
     pub name: String,
     styles: ThemeFile,
 }

@@ -44,7 +44,7 @@ pub enum BranchesQuestion {
 /// The answer to a [`BranchesQuestion`].
 #[derive(Debug, Clone)]
 pub enum BranchesAnswer {
-    /// The recorded decisions of the run.
+    /// The recorded decisions, from which alternatives are built.
     Decisions(Box<DecisionHistory>),
     /// For each checked edit, its rejection, or `None` if the edit can be simulated.
     Checked(Vec<Option<Rejection>>),

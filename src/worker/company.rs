@@ -39,9 +39,9 @@ pub struct DisplayedCompany {
     pub next_decision_day: u32,
     /// Cash at the end of each day, starting with day 0.
     pub cash_by_day: Vec<f64>,
-    /// Figures of every simulated week.
+    /// Company figures of every simulated week, oldest first.
     pub weeks: Vec<WeekFigures>,
-    /// Report on the last week.
+    /// Report on the last week; `None` before the first week.
     pub last_week: Option<WeekReport>,
     /// Negotiation funnel of every known group.
     pub funnels: Vec<Funnel>,
@@ -59,7 +59,7 @@ pub struct DisplayedCompany {
     pub quality: Vec<DeliveredQuality>,
     /// Base quality, and the general bonus that development has added.
     pub quality_base: (f64, f64),
-    /// Naive forecasts of cash.
+    /// Naive forecasts of cash, which the forecast form can fill in.
     pub naive_forecasts: Forecasts,
     /// Scores of past forecasts, by horizon.
     pub forecast_scores: Vec<ForecastScore>,
@@ -69,7 +69,7 @@ pub struct DisplayedCompany {
     pub past_queries: Vec<String>,
     /// Day on which the user last left each screen in an earlier session.
     pub last_viewed_days: BTreeMap<String, u32>,
-    /// The player's notes.
+    /// Text of the player's notes.
     pub notes: String,
     /// For each tool, the arguments that would set the values in force.
     pub settings: BTreeMap<ToolId, Map<String, Value>>,
@@ -87,23 +87,23 @@ pub struct DisplayedCompany {
     pub company_names: EnterpriseNames,
     /// Result of `get_group_insights` for every known group.
     pub insights: BTreeMap<Group, GroupInsights>,
-    /// Limits of tool arguments.
+    /// Limits and prices that apply to the tools, for forms.
     pub tool_limits: ToolLimits,
     /// Parameter values that are inserted into the descriptions of tools.
     pub numbers: Arc<ParameterNumbers>,
-    /// Running market studies.
+    /// Market studies that have not been completed.
     pub running_studies: Vec<RunningStudy>,
     /// Messages about problems found when the run was opened.
     pub remarks: Vec<String>,
     /// Whether this is a position of a playback, where the run cannot be changed.
     pub is_playback: bool,
-    /// Whether hidden state may be shown.
+    /// Whether inspections of hidden state are permitted.
     pub can_inspect: bool,
     /// Hidden true values of the displayed day; `None` unless the screens show true values.
     pub hidden_values: Option<Arc<HiddenValues>>,
     /// Session rules of the run.
     pub rules: SessionRules,
-    /// Study to which the run belongs.
+    /// Study to which the run belongs, if any.
     pub study: Option<StudyStamp>,
     /// State of the lesson to which the run belongs.
     pub lesson: Option<LessonStatus>,

@@ -40,7 +40,7 @@ pub enum InspectionQuestion {
     Draws(RandomPart, u32),
     /// The state of a customer, identified by number, on a day.
     Customer(u32, u32),
-    /// The result of a breakpoint command.
+    /// The result of listing or changing breakpoints.
     Breakpoints(BreakpointCommand),
     /// The result of a plain-mode command: its text and the parsed command.
     Command(String, InspectionCommand),
@@ -59,7 +59,7 @@ pub enum BreakpointCommand {
     History,
 }
 
-/// The result of an inspection.
+/// The result of an inspection, for the x-ray screen.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct InspectionAnswer {
     /// Description of the hidden state, as lines of text.

@@ -54,9 +54,9 @@ use study::ActiveStudy;
 
 pub use background::answer_on_thread;
 
-/// A job for the session thread.
+/// Work for the session thread. Jobs are done in the order in which they are sent.
 pub enum Job {
-    /// Execute a user's request.
+    /// Execute a request of the user, and send a response.
     Execute(Request),
     /// Seek to this position of the playback. Setting the flag stops the seek.
     Seek(SeekTarget, Arc<AtomicBool>),
@@ -78,7 +78,7 @@ pub enum Job {
     StartClock,
     /// Send a confirmation after all earlier jobs are done.
     Acknowledge(Sender<()>),
-    /// Save preferences for the next start.
+    /// Save preferences, so that the next start loads them.
     SavePreferences(Preferences),
     /// Save and close the run.
     Close(DetachCause),
@@ -86,7 +86,7 @@ pub enum Job {
     ShutDown,
 }
 
-/// Handle to the worker threads.
+/// Handle to the worker threads, with which the console sends jobs and questions.
 pub struct Workers {
     jobs: Sender<Job>,
     queries: QueryThreads,

@@ -15,7 +15,7 @@ use novamind_session::{DraftTexts, PlaybackPosition, SettingChange, TimeLeft, We
 use novamind_study::{DueQuestion, NextStep};
 use novamind_tools::{Answer, Rejection, ToolId};
 
-/// A message to the console.
+/// A message that wakes the console.
 pub enum Message {
     /// Input of the user: a key, a click, pasted text or a new window size.
     Input(Event),
@@ -35,7 +35,7 @@ pub enum Message {
 pub struct PlaybackUpdate {
     /// Company at the position; `None` if the company is unchanged.
     pub company: Option<Arc<DisplayedCompany>>,
-    /// Position of the playback.
+    /// Position at which the playback is now.
     pub position: PlaybackPosition,
     /// Problem to report to the user, if any.
     pub problem: Option<String>,
@@ -80,7 +80,7 @@ impl Delivery {
 pub struct DebugRunResult {
     /// Lines that describe why the simulation stopped.
     pub lines: Vec<String>,
-    /// Whether the run has ended.
+    /// Whether the run has ended, so that no more days can be simulated.
     pub has_ended: bool,
 }
 
@@ -92,7 +92,7 @@ pub enum Response {
     ClassRead(Box<Result<(CollectedClass, ClassDisplayOptions), String>>),
     /// A handout was opened. The runs folder is now the folder of the student with this label.
     HandoutOpened(String),
-    /// A run was opened.
+    /// A run was opened for play or read-only.
     Opened(Arc<DisplayedCompany>),
     /// A playback was opened.
     PlaybackOpened(Arc<DisplayedCompany>, Box<PlaybackPosition>),
@@ -147,7 +147,7 @@ pub enum Response {
     Closed(Option<String>),
     /// A response to a request in a study.
     Study(StudyResponse),
-    /// A worker thread has panicked.
+    /// A worker thread has panicked. Contains the message of the panic.
     Crashed(String),
     /// The record can no longer be written. Contains the reason and the next step.
     RecordLost(String),

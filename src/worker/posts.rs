@@ -7,7 +7,7 @@ use novamind_session::Session;
 use novamind_session::identifiers::Group;
 use novamind_tools::{GetSocialPosts, PostAuthor, PostLimit, SocialPost};
 
-/// The kind of a post's author.
+/// Who wrote a post.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PostKind {
     /// Customers who post without being asked.
@@ -46,7 +46,7 @@ impl PostKind {
 /// A post of the social feed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Post {
-    /// Kind of the author.
+    /// Who wrote the post.
     pub kind: PostKind,
     /// Number of the post. The player's posts and other posts are numbered separately.
     pub number: u32,
@@ -54,7 +54,7 @@ pub struct Post {
     pub day: u32,
     /// Name and group of the author.
     pub author: String,
-    /// Text of the post.
+    /// Text of the post, without its author.
     pub text: String,
     /// Number of the post to which this post replies, if any.
     pub answered_post: Option<u32>,

@@ -33,7 +33,7 @@ pub enum Request {
     Recover(String),
     /// Open a playback of a recorded run.
     Replay {
-        /// Recorded run to play back.
+        /// Run or file to play back.
         recorded: RecordSource,
         /// Initial position of the playback.
         goal: SeekTarget,
@@ -51,9 +51,9 @@ pub enum Request {
     },
     /// Execute a tool call.
     Call {
-        /// Tool to call.
+        /// Tool that is called.
         tool: ToolId,
-        /// Arguments of the call.
+        /// Arguments of the call, not yet validated.
         arguments: Value,
     },
     /// Undo the last setting change.
@@ -84,7 +84,7 @@ pub enum Request {
 /// A request of a student in a lesson. Steps and parts are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LessonRequest {
-    /// Answer the question of the step.
+    /// Answer the question of the step with this number.
     Guess(f64),
     /// Show the next hint.
     Hint,
@@ -131,7 +131,7 @@ pub enum StudyRequest {
 /// The participant's answer to a question, with details of how it was entered.
 #[derive(Debug, Clone)]
 pub struct GivenAnswer {
-    /// Question that is answered.
+    /// Question that the participant answered.
     pub due: DueQuestion,
     /// Value of the answer; null if the question was skipped.
     pub value: Value,
@@ -150,7 +150,7 @@ pub enum RecordSource {
     File(PathBuf),
 }
 
-/// Status text while a script runs.
+/// Status text that is shown while a script runs.
 pub const SCRIPT_STATUS: &str = "running the script";
 
 impl Request {

@@ -21,7 +21,7 @@ use novamind_tools::Rejection;
 /// A question for the preview of a run in the run list.
 #[derive(Debug, Clone)]
 pub struct PreviewQuestion {
-    /// ID of the run to preview.
+    /// ID of the selected run.
     pub id: String,
 }
 

@@ -22,7 +22,7 @@ const MAX_STUDENTS: u32 = 999;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Class {
-    /// Format version of `class.toml`.
+    /// Format version of the file `class.toml`.
     pub format: u32,
     /// Version of the program that created the class.
     pub program: String,
@@ -34,7 +34,7 @@ pub struct Class {
     pub lesson: Option<ClassLesson>,
     /// The run that was handed out; `None` if a lesson was handed out.
     pub run: Option<ClassSourceRun>,
-    /// The students of the class.
+    /// Students to whom handouts were written.
     #[serde(rename = "student")]
     pub students: Vec<ClassStudent>,
 }
@@ -53,9 +53,9 @@ pub struct ClassLesson {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassSourceRun {
-    /// Name of the instructor's run.
+    /// Run ID of the instructor's run.
     pub run: String,
-    /// Last day of the instructor's run.
+    /// Day from which the students continue.
     pub day: u32,
 }
 
@@ -63,7 +63,7 @@ pub struct ClassSourceRun {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassStudent {
-    /// Label of the student.
+    /// Label of the student, such as `S01`.
     pub label: String,
     /// Name of the run that the handout creates.
     pub run: String,

@@ -29,7 +29,7 @@ pub struct ClassCollection {
     pub runs: Vec<ClassRun>,
     /// Results of the reference play on the seeds of the submitted runs.
     pub references: Vec<ClassReference>,
-    /// Problems to report to the instructor.
+    /// Problems for the instructor to resolve, such as altered or missing runs.
     pub findings: Vec<ClassFinding>,
     /// Number of records that do not count, because they are duplicates or earlier states of a collected run.
     pub superseded: u32,
@@ -39,9 +39,9 @@ pub struct ClassCollection {
 
 /// The class to collect, and the places to search.
 pub struct CollectionInput<'a> {
-    /// The class whose submissions are collected.
+    /// Class whose handouts identify the submissions.
     pub class: &'a Class,
-    /// Folder of the class.
+    /// Folder with `class.toml` and the handouts.
     pub folder: &'a Path,
     /// Folders that are searched recursively for runs and archives.
     pub places: &'a [PathBuf],

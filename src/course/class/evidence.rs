@@ -18,7 +18,7 @@ use novamind_session::{Integrity, SealKey, Session, measure, read_origin, settin
 pub struct Evidence {
     /// The part of the lesson that the student played, counted from 1.
     pub part: u32,
-    /// Seed of the run.
+    /// Seed of the run, on which the reference play is also simulated.
     pub seed: u64,
     /// Last simulated day of the run.
     pub day: u32,
@@ -56,7 +56,7 @@ pub struct StepEvidence {
 pub struct GoalEvidence {
     /// Measured value of the goal; `None` if it could not be measured.
     pub value: Option<f64>,
-    /// Whether the goal was reached.
+    /// Whether the value meets the bound of the goal.
     pub met: bool,
 }
 
@@ -222,11 +222,11 @@ fn last_week_figures(session: &Session) -> BTreeMap<String, f64> {
 pub struct ClassRun {
     /// Label in the first event of the run, otherwise the label in the run's path; empty if neither contains a label.
     pub label: String,
-    /// Name of the run.
+    /// ID of the run, from its manifest.
     pub run: String,
     /// Time at which the run started, in RFC 3339 format.
     pub created: String,
-    /// Path where the run was found.
+    /// Path of the record in the searched folders, or of the archive that contains it.
     pub source: PathBuf,
     /// Whether the run counts, and why not.
     pub verdict: RunVerdict,

@@ -32,7 +32,7 @@ pub enum ClassFinding {
         label: String,
         /// Name of the run.
         run: String,
-        /// Paths of the records.
+        /// Where the contradicting records were found.
         paths: Vec<PathBuf>,
     },
     /// A run of a different lesson, or of a different version of the lesson.

@@ -24,7 +24,7 @@ pub(super) const HANDOUT_EXTENSION: &str = ".nm";
 /// The file with which one student starts a lesson or continues a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Handout {
-    /// Label of the student.
+    /// Label of the student who receives the handout.
     pub label: String,
     /// The class, and the name of the run that the handout creates.
     pub stamp: HandoutStamp,
@@ -45,9 +45,9 @@ pub enum HandoutContent {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandoutRunFiles {
-    /// Content of `run.toml`.
+    /// Content of the file `run.toml`.
     pub manifest: String,
-    /// Content of `trajectory.jsonl`.
+    /// Content of the file `trajectory.jsonl`.
     pub trajectory: String,
 }
 

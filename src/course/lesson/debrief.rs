@@ -50,7 +50,7 @@ pub struct Debrief {
     pub participant: Option<String>,
     /// Seed of the student's run.
     pub seed: u64,
-    /// Reason why the run ended.
+    /// Reason why the run ended, if it has ended.
     pub ended: Option<RunEndReason>,
     /// First day on which the student decided.
     pub first_day: u32,
@@ -92,7 +92,7 @@ pub struct ReferenceCurve {
 /// The weekly figure by which a part is judged: the figure of the first goal in the last step that has goals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JudgedFigure {
-    /// The weekly figure.
+    /// Weekly figure that the ranked goal measures.
     pub figure: WeekFigure,
     /// Day and value at the end of each week of the student's run.
     pub actual: Vec<(u32, f64)>,
@@ -153,7 +153,7 @@ impl DecisionEffect {
 /// Results of the student's run, as played and with the decisions of the reference play in one week.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ReferenceEffect {
-    /// Last day of both simulations.
+    /// Last day that both simulations reached.
     pub day: u32,
     /// Cash at the end of `day` with the student's decisions, in dollars.
     pub own: f64,

@@ -31,7 +31,7 @@ pub struct DifferentDecision {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DecisionDifference {
-    /// The tool's settings differ.
+    /// Some settings of the tool differ.
     Settings {
         /// The settings that differ between the two plays.
         settings: Vec<SettingDifference>,

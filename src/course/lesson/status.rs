@@ -78,7 +78,7 @@ pub struct LessonQuestion {
 /// A goal of a step and its current value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GoalStatus {
-    /// Text of the goal.
+    /// Text that states the goal for the student.
     pub text: String,
     /// Current value; `None` if the goal cannot be measured yet.
     pub value: Option<f64>,

@@ -106,8 +106,8 @@ fn describe_lead_costs(spell: &AdResults) -> String {
     }
 }
 
-/// Returns the advertising form, filled with the current budgets except those of a group in the channels that `of`
-/// selects.
+/// Returns the advertising form, filled with the current budgets without those of a group in some channels: those for
+/// which `of` returns true.
 fn target_without_ads(
     situation: &DiagnosisContext<'_>,
     group: Group,

@@ -88,18 +88,18 @@ impl Problem {
 pub enum ActionTarget {
     /// The form of a tool, filled with these arguments.
     Call(ToolId, Value),
-    /// The thread with this number.
+    /// The thread with this number, where the player can answer.
     Thread(u32),
-    /// The page of a group.
+    /// The page of a group, which shows its requirements.
     Group(Group),
-    /// The ledger of the company.
+    /// The ledger, which shows all income and costs.
     Ledger,
 }
 
 /// A problem that needs action.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActionItem {
-    /// Kind of the problem.
+    /// Which problem it is, and for which group or channel.
     pub problem: Problem,
     /// Sentences that describe the problem and its amounts.
     pub text: String,

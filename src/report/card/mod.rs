@@ -14,7 +14,7 @@ use novamind_session::Generation;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct LabeledFigure {
-    /// Formatted value of the figure.
+    /// Value with its unit, as text.
     value: String,
     name: String,
 }

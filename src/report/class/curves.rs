@@ -35,7 +35,7 @@ pub struct Scatter<'a> {
     pub decision: String,
     /// Figure on the vertical axis. The axis shows its value in the last week.
     pub figure: String,
-    /// One point for each student.
+    /// One point per student, at the values of the decision and the figure.
     pub points: Vec<StudentPoints<'a>>,
 }
 

@@ -27,11 +27,11 @@ const DEFAULT_FIGURE: &str = "cash";
 
 /// The results of a class, and the options for displaying them.
 pub struct ClassView<'a> {
-    /// The class with its students.
+    /// What was handed out, and to which students.
     pub class: &'a Class,
     /// The lesson of the class; `None` if a run was handed out.
     pub lesson: Option<&'a Arc<Lesson>>,
-    /// The submissions of the class.
+    /// The submissions, and the results of the reference play.
     pub collection: &'a ClassCollection,
     /// How the results are displayed.
     pub display: ClassDisplayOptions,

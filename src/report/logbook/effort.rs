@@ -23,7 +23,7 @@ pub struct PlayerEffort {
     pub undone: u32,
     /// Number of accepted calls by tool.
     pub tools: BTreeMap<String, u32>,
-    /// Number of SQL queries.
+    /// Number of SQL queries, including failed ones.
     pub queries: u32,
     /// Number of SQL queries that were rejected or failed.
     pub queries_failed: u32,

@@ -43,7 +43,7 @@ pub struct Logbook {
     pub scenario: String,
     /// Seed of the run.
     pub seed: u64,
-    /// Planned last day of the run.
+    /// Last day that was planned when the run was created.
     pub days: u32,
     /// Rule that derived the last day.
     pub horizon_rule: HorizonRule,
@@ -51,13 +51,13 @@ pub struct Logbook {
     pub generation: Generation,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
-    /// Format version of the trajectory.
+    /// Format version of the trajectory file.
     pub format: u32,
     /// Study to which the run belongs, if any.
     pub study: Option<StudyStamp>,
     /// Version of the program that recorded the run.
     pub version: String,
-    /// Digest of the effective parameters.
+    /// Digest of the parameters in force, after scenario and overrides.
     pub parameters_digest: String,
     /// Whether the parameters differ from the bundled scenario of the same name, or did on some days.
     pub has_own_parameters: bool,
@@ -77,7 +77,7 @@ pub struct Logbook {
     pub ended_at: Option<String>,
     /// Reason why the run ended; `None` if it is unfinished.
     pub ended: Option<RunEndReason>,
-    /// Last simulated day of the run.
+    /// Last day that was simulated.
     pub day: u32,
     /// Cash after the last simulated day, dollars.
     pub cash: f64,
@@ -93,7 +93,7 @@ pub struct Logbook {
     pub clock_set_back: u32,
     /// Number of times that the run was opened, as counted in its lines.
     pub sittings: SessionCount,
-    /// Summary of the player's notes.
+    /// Versions of the player's notes, and words of the last version.
     pub notes: NotesSummary,
     /// Number of weeks that the player decided in less than ten active seconds.
     pub fast_weeks: u32,
@@ -109,7 +109,7 @@ pub struct Logbook {
     pub measures: BehaviorMeasures,
     /// Advertising results by group and channel.
     pub ads: Vec<ChannelRow>,
-    /// State hash after the last week.
+    /// State hash after the last week; `None` before the first week.
     pub state_hash: Option<String>,
     /// Number of the last line of the trajectory.
     pub last_seq: u64,

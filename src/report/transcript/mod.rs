@@ -40,7 +40,7 @@ pub struct Transcript {
     pub manifest: Manifest,
     /// Values of the parameters that manuals document, as in force on day 0.
     pub numbers: ParameterNumbers,
-    /// Dashboard of day 0 as text.
+    /// Text of the dashboard on day 0, before the first action.
     pub opening_dashboard: String,
     /// Actions of the player in order.
     pub steps: Vec<TranscriptStep>,
@@ -72,18 +72,18 @@ pub struct TranscriptStep {
 /// An action of the player.
 #[derive(Debug)]
 pub enum TranscriptAction {
-    /// A tool call.
+    /// A tool call, accepted or rejected.
     Call {
         /// Tool that the player called. The program may not have a tool of this name.
         tool: CalledTool,
-        /// Arguments of the call.
+        /// Arguments as recorded.
         args: Value,
         /// Result or rejection of the call.
         answer: Result<Value, RejectionRecord>,
         /// Interface and duration of the call.
         extra: Map<String, Value>,
     },
-    /// A database query.
+    /// A database query of the player.
     Query {
         /// SQL as recorded.
         sql: String,
@@ -108,7 +108,7 @@ pub enum TranscriptAction {
     Debugging(String),
 }
 
-/// Result of a week.
+/// State of the company after a week.
 #[derive(Debug)]
 pub struct WeekResult {
     /// Last day of the week.

@@ -26,7 +26,7 @@ WHERE c.customer_id = s.customer_id AND s.status = 'subscribed' GROUP BY 1";
 /// A run in the format of the viewer.
 #[derive(Debug)]
 pub struct ViewerExport {
-    /// Content of the run's file.
+    /// Content of the file of the run.
     pub run: Value,
     /// Content of the file of each week, with the number of the week.
     pub weeks: Vec<(u32, Value)>,

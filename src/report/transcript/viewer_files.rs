@@ -19,7 +19,7 @@ pub(super) struct PlayerFiles {
 }
 
 impl PlayerFiles {
-    /// Path of the notes.
+    /// Path under which the viewer shows the notes.
     pub(super) const NOTES: &str = "notes.md";
 
     /// Applies the effect of an action to the files.

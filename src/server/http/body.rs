@@ -14,7 +14,7 @@ const MAX_BODY_BYTES: usize = 1024 * 1024;
 /// Time limit for the arrival of a request body.
 const BODY_DEADLINE: Duration = Duration::from_secs(30);
 
-/// The fields of a request body.
+/// The fields of a request body, which routes take one by one.
 #[derive(Debug)]
 pub struct BodyFields {
     fields: Map<String, Value>,

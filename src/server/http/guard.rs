@@ -13,7 +13,7 @@ use axum::http::header::{AUTHORIZATION, HOST, ORIGIN};
 use crate::request::{ApiResponse, ResponseStatus};
 use novamind_record::error::RunError;
 
-/// Requirements that every request must meet.
+/// Checks that every request must pass.
 #[derive(Debug, Clone)]
 pub struct RequestGuard {
     /// Token that requests must send as `Authorization: Bearer`, if a token is required.

@@ -78,7 +78,7 @@ impl Band {
 pub struct XAxis<'a> {
     /// Function that formats a value for a label.
     pub format: &'a dyn Fn(f64) -> String,
-    /// Values that the axis must contain.
+    /// Values that the axis must include.
     pub required_values: &'a [f64],
 }
 
@@ -86,7 +86,7 @@ pub struct XAxis<'a> {
 pub struct YAxis<'a> {
     /// Unit of the values, which determines the format of their labels.
     pub unit: AxisUnit,
-    /// Values that the axis must contain.
+    /// Values that the axis must include.
     pub required_values: &'a [f64],
 }
 
@@ -110,9 +110,9 @@ pub struct Plot<'a> {
     pub band: Option<&'a Band>,
     /// Horizontal position of a vertical line, if any.
     pub marked_x: Option<f64>,
-    /// The horizontal axis of the chart.
+    /// Labels and required values of the horizontal axis.
     pub x: &'a XAxis<'a>,
-    /// The vertical axis of the chart.
+    /// Unit and required values of the vertical axis.
     pub y: &'a YAxis<'a>,
 }
 

@@ -18,7 +18,7 @@ pub struct ColumnLayout {
     /// order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub order: Vec<String>,
-    /// Headings of hidden columns.
+    /// Headings of the columns that the user has hidden.
     #[serde(skip_serializing_if = "BTreeSet::is_empty")]
     pub hidden: BTreeSet<String>,
     /// Widths that the user chose, by heading, in terminal cells. Other columns are as wide as their contents.

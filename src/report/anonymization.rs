@@ -3,7 +3,7 @@
 //!
 //! New names are derived from a secret that the experimenter keeps, so that tables collected later have the same names.
 //! For each run, the table of runs contains a hash of the last hash in the sealed original. Anyone who has an original
-//! can therefore prove to which run it belongs.
+//! can therefore prove which run it belongs to.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -49,7 +49,7 @@ const IDENTIFYING_COLUMNS: [(&str, &str); 4] =
 // Columns that describe the design of a session. A rare combination of their values can identify a participant.
 const DESIGN_COLUMNS: [&str; 2] = ["seed", "condition"];
 
-/// Columns by which tables are joined, so they cannot be omitted.
+/// Columns that join the tables, so they cannot be omitted.
 const REQUIRED_COLUMNS: [&str; 2] = ["run", "participant"];
 
 /// Anonymized tables, and the links to the original runs.

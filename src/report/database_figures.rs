@@ -48,7 +48,7 @@ pub struct ChannelRow {
 /// Leads, subscriptions and revenue of a group over the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroupHistory {
-    /// Group to which the other fields refer.
+    /// Group that the other fields describe.
     pub group: Group,
     /// Number of leads over the whole run.
     pub leads: f64,

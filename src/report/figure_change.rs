@@ -18,7 +18,7 @@ pub struct FigureChange {
     pub earlier_changes: usize,
 }
 
-/// Minimum number of earlier changes with which a change can be compared.
+/// Minimum number of earlier changes for a comparison.
 const MIN_EARLIER_CHANGES: usize = 4;
 /// Ratio of the standard deviation to the median absolute deviation of a normal distribution.
 const MAD_TO_STD: f64 = 1.4826;

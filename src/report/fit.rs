@@ -95,7 +95,7 @@ impl FitCriterion {
 /// Prices, quality and quota of a plan for one group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanFit {
-    /// Plan to which the other fields refer.
+    /// Plan that the other fields describe.
     pub plan: Plan,
     /// List price, dollars per month; 0 if the plan is not on sale.
     pub list_price: f64,

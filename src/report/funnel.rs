@@ -8,7 +8,7 @@ use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session};
 /// How many enterprises of a group reached each stage of the sales funnel, over the whole run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Funnel {
-    /// Enterprise group to which the other fields refer.
+    /// Enterprise group that the other fields describe.
     pub group: Group,
     /// Number of enterprises that arrived, whether or not they requested an offer.
     pub enterprises: u32,

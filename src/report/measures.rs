@@ -39,9 +39,9 @@ pub struct BehaviorMeasures {
     pub survival_days: u32,
     /// Cash on the last simulated day, dollars.
     pub cash: f64,
-    /// Share of advertising spending on the best channel of each group; `None` without advertising.
+    /// Share of advertising spending on the best channel of each group; `None` if there was no advertising.
     pub channels: Option<BestTriedChannelSpend>,
-    /// Share of development spending that is targeted; `None` without development spending.
+    /// Share of development spending that is targeted; `None` if there was no development spending.
     pub targeted_development: Option<f64>,
     /// Scores of the forecasts, by horizon.
     pub forecasts: Vec<ForecastScore>,
@@ -177,8 +177,8 @@ pub struct TrueBestChannelSpend {
     pub groups: BTreeMap<String, f64>,
 }
 
-/// Returns the share of advertising spending on the truly best channels. Returns `None` without advertising, or if the
-/// best channel of a group is unknown.
+/// Returns the share of advertising spending on the truly best channels. Returns `None` if there was no advertising or
+/// the best channel of a group is unknown.
 pub fn true_best_channel_share(
     rows: &[ChannelRow],
     best: impl Fn(Group) -> Option<Channel>,
@@ -208,7 +208,7 @@ pub fn first_forecast_scores(journal: &[JournalEntry], weeks: &[WeekFigures]) ->
     horizons.into_iter().map(|horizon| ForecastScore::from_forecasts(horizon, &first)).collect()
 }
 
-/// Returns the share of development spending that is targeted, over the simulated days. Returns `None` without
+/// Returns the share of development spending that is targeted, over the simulated days. Returns `None` if there was no
 /// development spending.
 pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
     let mut general = 0.0;

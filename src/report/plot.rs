@@ -39,7 +39,7 @@ impl AxisScale {
 pub struct PlotArea {
     /// Width in characters, including labels.
     pub width: usize,
-    /// Height in lines, without the labels below the chart.
+    /// Height in lines, excluding the labels below the chart.
     pub height: usize,
     /// Scale of the horizontal axis.
     pub x_scale: AxisScale,
@@ -63,7 +63,7 @@ pub fn sparkline_char(share: f64) -> char {
 
 /// A series of points that are drawn with the same character. Later series cover earlier ones.
 pub struct PlotSeries<'a> {
-    /// Character with which the points are drawn.
+    /// Character that represents the points.
     pub mark: char,
     /// Points of the series, as horizontal and vertical values.
     pub points: &'a [(f64, f64)],

@@ -35,7 +35,7 @@ pub struct PublishedTable {
     pub date: String,
     /// Generation of the simulator that the agents played.
     pub generation: PublishedGeneration,
-    /// What is known about the generation, and from which evidence.
+    /// What is known about the generation, and on what evidence.
     pub basis: String,
     /// Published results of each agent.
     pub agent: Vec<PublishedAgent>,
@@ -119,7 +119,7 @@ impl PublishedResults {
         &self.table[0]
     }
 
-    /// Returns the table with which runs of a generation are ranked, or `None` if no results of the generation are
+    /// Returns the table that runs of a generation are compared with, or `None` if no results of the generation are
     /// published.
     pub fn table_of(&self, generation: Generation) -> Option<&PublishedTable> {
         self.table.iter().find(|table| table.generation == generation.into())

@@ -22,7 +22,7 @@ pub struct Bankruptcy {
     pub turning_points: Vec<String>,
 }
 
-/// All data from which a run report is formatted.
+/// The data that a run report is formatted from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunReport {
     /// State of the run on its current day.

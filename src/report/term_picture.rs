@@ -52,7 +52,7 @@ pub enum TermDrawing {
 /// Lines, points and a band in a chart with axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermLines {
-    /// Name and points of each line. A line without a name has an empty one.
+    /// Name and points of each line; the name can be empty.
     pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
     /// Shaded interval: horizontal position, lower endpoint and upper endpoint of each point.
     pub band: Vec<(f64, f64, f64)>,

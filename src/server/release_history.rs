@@ -128,7 +128,7 @@ impl ReleaseHistory {
                     success: entry["success"] == true,
                 });
             } else {
-                history.skip(number, &format!("the operation {:?} has no counterpart", checked.operation));
+                history.skip(number, &format!("this program has no operation {:?}", checked.operation));
             }
         }
         match history.entries.is_empty() {
@@ -206,7 +206,7 @@ fn check_entry(entry: &Map<String, Value>, day: u32) -> Result<Option<Checked>, 
     }
     let can_advance = operation == WEEK_OPERATION;
     if after < before || (after > before && !can_advance) {
-        return Err(format!("{operation} cannot lead from day {before} to day {after}"));
+        return Err(format!("{operation} cannot advance the run from day {before} to day {after}"));
     }
     if !entry.get("success").is_some_and(Value::is_boolean) {
         return Err("success is neither true nor false".to_owned());
@@ -332,7 +332,7 @@ mod tests {
             (without("day"), "day is not a day"),
             (without("success"), "neither true nor false"),
             (prices("b", 7).to_string(), "begins on day 7, but the previous entries end on day 0"),
-            (moved, "cannot lead from day 0 to day 7"),
+            (moved, "cannot advance the run from day 0 to day 7"),
         ] {
             let file = format!("{}\n{line}\n{}\n", prices("a", 0), prices("z", 0));
             let error = ReleaseHistory::parse(file.as_bytes()).expect_err(problem);

@@ -128,7 +128,7 @@ fn handle_query(session: &mut Session, sql: &Value) -> ApiResponse {
     }
 }
 
-/// Returns the status with which the server of the released simulator reports this error of a statement.
+/// Returns the status that the released simulator's server returns for this error of a statement.
 fn query_error_status(code: &str, interface: Interface) -> ResponseStatus {
     match code {
         "sql_empty" => ResponseStatus::BadRequest,

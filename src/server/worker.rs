@@ -1,4 +1,4 @@
-//! The thread that owns the session, and the handle with which interfaces send requests to this thread.
+//! The thread that owns the session, and the handle that interfaces use to send requests to this thread.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -99,7 +99,7 @@ pub struct SessionHandle {
     sender: Sender<QueuedRequest>,
     committed: Option<CommittedState>,
     advancing: PendingWeeks,
-    /// Number of requests that were sent, from which each request gets its number.
+    /// Number of requests that were sent; the next request gets this number.
     asked: Arc<AtomicU64>,
     running: CurrentRequest,
 }
@@ -138,7 +138,7 @@ fn worker_gone_response() -> ApiResponse {
     ApiResponse::invalid_request(
         ResponseStatus::Failed,
         "closing",
-        "the server is closing the run; everything confirmed is saved",
+        "the server is closing the run; all confirmed actions are saved",
     )
 }
 
@@ -271,7 +271,7 @@ fn internal_error(on_defect: OnDefect) -> ApiResponse {
     let mut answer = ApiResponse::invalid_request(
         ResponseStatus::Failed,
         "internal_error",
-        "an internal error occurred; everything confirmed before is saved, and the run continues",
+        "an internal error occurred; all actions confirmed before it are saved, and the run continues",
     );
     answer.body["defect_id"] = id.into();
     answer

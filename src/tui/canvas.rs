@@ -30,7 +30,7 @@ pub enum Click {
 pub struct Canvas<'a> {
     /// Cells into which the frame is drawn.
     pub buffer: &'a mut Buffer,
-    /// Theme from which roles get their styles.
+    /// Theme that defines the style of each role.
     pub theme: &'a Theme,
     /// Clickable areas of the frame. Later areas cover earlier areas.
     pub clicks: Vec<(Rect, Click)>,
@@ -42,9 +42,9 @@ pub struct Canvas<'a> {
     pub zoomed: bool,
     /// Whether the data is outdated. The border of every pane indicates this.
     pub stale: bool,
-    /// Text that replaces a chart without data.
+    /// Text that is shown instead of a chart if there is no data.
     pub empty_chart_text: &'static str,
-    /// Characters with which curves are drawn.
+    /// Characters for drawing curves.
     pub marker: Marker,
     /// Breadcrumbs that are shown before the title of the focused pane.
     pub breadcrumbs: Vec<String>,

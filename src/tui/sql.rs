@@ -216,9 +216,9 @@ fn number_length(rest: &str) -> usize {
     rest.find(|letter| !part_of(letter)).unwrap_or(rest.len())
 }
 
-/// Returns the range of the statement at a byte position, without its final semicolon; the index of the statement; and
-/// the number of statements. A position after the last semicolon belongs to the last statement unless another statement
-/// follows.
+/// Returns the range of the statement at a byte position (excluding its final semicolon), the index of the statement,
+/// and the number of statements. A position after the last semicolon belongs to the last statement unless another
+/// statement follows.
 pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
     let pieces = tokenize(sql);
     let ends =

@@ -6,7 +6,7 @@ use serde::Deserialize;
 /// The role of a text or symbol on the screen, which determines its style.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// Text without a special role.
+    /// Text that has no special role.
     Text,
     /// Text that is less important than the text around it.
     Dim,

@@ -22,7 +22,7 @@ use novamind_tools::Rejection;
 pub enum BranchesQuestion {
     /// List the decisions that an alternative can change, each with the settings before it.
     Decisions,
-    /// Check whether the edits of an alternative can be simulated, without simulating them.
+    /// Check whether the edits of an alternative can be simulated. Does not simulate them.
     Check {
         /// First week in which the alternative differs from the recorded decisions.
         week: u32,
@@ -44,7 +44,7 @@ pub enum BranchesQuestion {
 /// The answer to a [`BranchesQuestion`].
 #[derive(Debug, Clone)]
 pub enum BranchesAnswer {
-    /// The recorded decisions, from which alternatives are built.
+    /// The recorded decisions, which alternatives modify.
     Decisions(Box<DecisionHistory>),
     /// For each checked edit, its rejection, or `None` if the edit can be simulated.
     Checked(Vec<Option<Rejection>>),

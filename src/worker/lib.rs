@@ -86,7 +86,7 @@ pub enum Job {
     ShutDown,
 }
 
-/// Handle to the worker threads, with which the console sends jobs and questions.
+/// Handle to the worker threads. The console uses it to send jobs and questions.
 pub struct Workers {
     jobs: Sender<Job>,
     queries: QueryThreads,

@@ -114,7 +114,7 @@ pub enum Response {
     NotOpened(String, Option<OpenFallback>),
     /// A tool call was executed or rejected.
     ToolCalled(ToolId, Result<Box<Answer>, Rejection>, Arc<DisplayedCompany>),
-    /// A setting change was undone or redone, or the request was rejected.
+    /// A setting change was undone or redone, or this was rejected.
     SettingRestored(&'static str, Result<Vec<SettingChange>, Rejection>, Arc<DisplayedCompany>),
     /// A day was simulated. Contains its figures if the day was simulated for the first time.
     DaySimulated(u32, Option<SimulatedDay>),
@@ -126,7 +126,7 @@ pub enum Response {
     DatabaseCurrent,
     /// Days of a debug run were simulated.
     DebugDaysSimulated(Result<DebugRunResult, Rejection>, Arc<DisplayedCompany>),
-    /// A guess was recorded or a hint was requested in a lesson, or the request was rejected.
+    /// In a lesson, a guess was recorded or a hint was shown, or this was rejected.
     LessonUpdated(Option<Rejection>, Arc<DisplayedCompany>),
     /// The debrief of a lesson part was computed.
     DebriefReady(Arc<Result<Debrief, Rejection>>),

@@ -13,7 +13,7 @@ use novamind_session::Preview;
 use novamind_session::identifiers::Group;
 use novamind_tools::{Rejection, ToolId};
 
-/// A question for the preview of a tool call, which describes its effects without executing it.
+/// A question for the preview of a tool call. The preview describes the effects of the call without executing it.
 #[derive(Debug, Clone)]
 pub struct PreviewCallQuestion {
     /// Tool whose call is previewed.

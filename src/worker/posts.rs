@@ -54,7 +54,7 @@ pub struct Post {
     pub day: u32,
     /// Name and group of the author.
     pub author: String,
-    /// Text of the post, without its author.
+    /// Text of the post, excluding the author.
     pub text: String,
     /// Number of the post to which this post replies, if any.
     pub answered_post: Option<u32>,

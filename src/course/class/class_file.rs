@@ -55,7 +55,7 @@ pub struct ClassLesson {
 pub struct ClassSourceRun {
     /// Run ID of the instructor's run.
     pub run: String,
-    /// Day from which the students continue.
+    /// Day up to which the students' runs repeat the instructor's run.
     pub day: u32,
 }
 
@@ -67,7 +67,7 @@ pub struct ClassStudent {
     pub label: String,
     /// Name of the run that the handout creates.
     pub run: String,
-    /// Seal of the original handout, from which changes of the file are detected.
+    /// Seal of the original handout, which shows whether the handout file was changed.
     pub seal: String,
 }
 

@@ -1,4 +1,4 @@
-//! Handouts: files with which students start a lesson or continue a run (docs/formats/class.md#handout).
+//! Handouts: files that students use to start a lesson or continue a run (docs/formats/class.md#handout).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub(super) const HANDOUT_FORMAT: u32 = 1;
 
 pub(super) const HANDOUT_EXTENSION: &str = ".nm";
 
-/// The file with which one student starts a lesson or continues a run.
+/// The file that one student uses to start a lesson or continue a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Handout {
     /// Label of the student who receives the handout.

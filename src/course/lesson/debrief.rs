@@ -188,8 +188,8 @@ fn serialize_hint_usage<S: Serializer>(
     serde_json::json!({ "used": used, "of": of }).serialize(serializer)
 }
 
-/// Returns the student's tool calls by week. Excludes the calls with which the part starts, and capacity changes that
-/// the lesson makes.
+/// Returns the student's tool calls by week. Excludes the lesson's own calls: those at the start of the part, and
+/// capacity changes.
 fn student_calls(session: &Session, lesson_progress: &LessonProgress) -> Vec<ScheduledCalls> {
     let part = lesson_progress.current_part();
     let is_set_by_lesson = |tool: ToolId| part.has_automatic_capacity() && tool == ToolId::SetCapacityTier;

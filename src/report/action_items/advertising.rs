@@ -86,7 +86,7 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
         text,
         proposal: Some(format!("Removing these ads saves {} a day.", format_money(ads))),
         target: target_without_ads(situation, group, |other| other == channel),
-        // Amount by which the leads cost more than they would at the earlier cost per lead.
+        // Money at risk: the part of the cost that exceeds the cost at the earlier price per lead.
         at_risk: ads * RISK_DAYS * (1.0 - 1.0 / rise),
         is_urgent: false,
     })
@@ -106,8 +106,8 @@ fn describe_lead_costs(spell: &AdResults) -> String {
     }
 }
 
-/// Returns the advertising form, filled with the current budgets without those of a group in some channels: those for
-/// which `of` returns true.
+/// Returns the advertising form with the current budgets. Removes the budgets of a group in those channels for which
+/// `of` returns true.
 fn target_without_ads(
     situation: &DiagnosisContext<'_>,
     group: Group,

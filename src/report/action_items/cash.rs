@@ -61,7 +61,7 @@ struct SpendingBudget {
     name: &'static str,
     /// Current budget, dollars per day.
     dollars: f64,
-    /// Reduced budget with which cash lasts for eight weeks, dollars per day.
+    /// Reduced budget that lets cash last for eight weeks, dollars per day.
     reduced_dollars: f64,
     /// Form that sets the budget, filled with the reduced amounts.
     target: ActionTarget,
@@ -171,8 +171,8 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
 }
 
 /// Proposes the best model tier whose compute cost the plan's revenue covers at the same usage. If no tier qualifies,
-/// proposes a quota with which the compute cost cannot exceed the revenue. Returns `None` if the current quota already
-/// ensures this.
+/// proposes a quota that keeps the compute cost below the revenue. Returns `None` if the current quota already ensures
+/// this.
 fn propose_cheaper_setting(
     situation: &DiagnosisContext<'_>,
     plan: Plan,

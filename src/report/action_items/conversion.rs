@@ -9,7 +9,7 @@ use crate::measured_conversion::SETTINGS_JUDGED_BY_LEADS;
 use novamind_base::formatting::percent;
 use novamind_session::identifiers::{Group, Plan};
 
-/// Number of earlier weeks with which the last week is compared.
+/// Number of earlier weeks that the last week is compared with.
 const COMPARED_WEEKS: usize = 4;
 /// Minimum number of leads and of signups in each compared period. With fewer, the normal approximation of the
 /// difference is not valid.

@@ -14,7 +14,7 @@ use novamind_tools::ToolId;
 const MIN_WAVE_CANCELLATIONS: f64 = 20.0;
 /// Number of weeks after which all customers who signed up in the first week have been billed.
 const BILLING_CYCLE_WEEKS: usize = 5;
-/// Number of earlier weeks with which a week is compared.
+/// Number of earlier weeks that a week is compared with.
 const COMPARED_WEEKS: usize = 4;
 /// Minimum number of earlier weeks for a comparison.
 const MIN_COMPARED_WEEKS: usize = 2;
@@ -67,12 +67,12 @@ pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<Actio
     })
 }
 
-/// Prices from which the payments of waiting enterprises are estimated.
+/// Prices for estimating the payments of waiting enterprises.
 struct ThreadPrices {
     fits: Vec<Fit>,
     /// Estimated usage of each known group, units per seat per day.
     usage: BTreeMap<Group, f64>,
-    /// Lowest list price, from which money at risk is estimated if no price is known.
+    /// Lowest list price, for estimating the money at risk if no price is known.
     lowest_list_price: f64,
 }
 

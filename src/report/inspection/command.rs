@@ -52,7 +52,7 @@ pub enum InspectionOutput {
 }
 
 impl InspectionCommand {
-    /// Words with which the commands start.
+    /// First word of each command.
     pub const COMMAND_NAMES: [&str; 4] = ["find", "who", "diff", "set"];
 
     /// Parses a command line, which starts with one of [`InspectionCommand::COMMAND_NAMES`].

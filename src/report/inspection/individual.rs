@@ -44,7 +44,7 @@ pub fn describe_individual(view: &IndividualView) -> Vec<String> {
     clean_up_numbers(lines)
 }
 
-/// Describes the individual's decision on the inspected day, and the terms without which it would have been different.
+/// Describes the individual's decision on the inspected day, and the terms that were decisive for it.
 fn headline(view: &IndividualView) -> String {
     let Some(individual_day) = view.shown_state() else { return signup_headline(view) };
     let WeighedDecision { choice, plans, decisive_terms: turning, .. } = &individual_day.weighed_decision;

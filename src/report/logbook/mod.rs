@@ -141,7 +141,7 @@ pub struct WeekRecord {
     pub inherited: bool,
     /// Whether the week was decided in this run, in less than ten active seconds.
     pub implausibly_fast: bool,
-    /// Time from which the player could decide, RFC 3339.
+    /// Earliest time at which the player could decide, RFC 3339.
     pub began_at: String,
     /// Time at which the decisions were submitted, RFC 3339.
     pub decided_at: String,

@@ -152,9 +152,9 @@ impl MessageStep {
     }
 }
 
-/// Returns the steps as events, from which Inspect builds its message tables. Each step of the player becomes a model
-/// event that contains the messages since the previous step, and each call becomes a tool event. The last model event
-/// has no output, and its input is the last result.
+/// Returns the steps as events. Inspect builds its message tables from these events. Each step of the player becomes a
+/// model event that contains the messages since the previous step, and each call becomes a tool event. The last model
+/// event has no output, and its input is the last result.
 fn step_events(steps: &[MessageStep], created: &str, model: &str) -> Vec<Value> {
     let mut events = Vec::new();
     let (mut input, mut at) = (Vec::new(), created);

@@ -34,7 +34,7 @@ impl Shutdown {
         Ok(Shutdown { request: Arc::default() })
     }
 
-    /// Returns the notifier with which a request stops the server.
+    /// Returns the notifier that requests use to stop the server.
     pub fn stop_notifier(&self) -> Arc<Notify> {
         self.request.clone()
     }

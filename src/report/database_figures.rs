@@ -39,7 +39,7 @@ pub struct ChannelRow {
     pub group: String,
     /// Name of the channel.
     pub channel: String,
-    /// Leads of the group that arrived through this channel.
+    /// Number of the group's leads that arrived through this channel.
     pub leads: f64,
     /// Advertising spending for the group in this channel, dollars.
     pub spend: f64,

@@ -177,8 +177,7 @@ pub struct DraftPlanTerms {
 }
 
 impl DraftPlanTerms {
-    /// Returns the compute cost in dollars per unit on the current model tier, or `None` if the tier is
-    /// unknown.
+    /// Returns the compute cost in dollars per unit on the plan's model tier, or `None` if the tier is unknown.
     fn unit_cost(&self, models: &[(u8, f64)]) -> Option<f64> {
         models.iter().find(|(tier, _)| *tier == self.tier).map(|(_, unit_cost)| *unit_cost)
     }

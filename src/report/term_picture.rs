@@ -19,7 +19,7 @@ const MAX_BAR_WIDTH: f64 = 30.0;
 pub struct VisibleFigures<'a> {
     /// Figures of the company for every week.
     pub weeks: &'a [WeekFigures],
-    /// Figures of the groups for every week.
+    /// Figures of every group for every week.
     pub group_weeks: &'a [ByGroup<GroupWeek>],
     /// Fit of every known group.
     pub fits: &'a [Fit],

@@ -18,7 +18,7 @@ use novamind_tools::{ToolId, ToolKind, find};
 // Name of the branch without edits. Its simulation can continue beyond the end of the record, with unchanged settings.
 const UNCHANGED_BRANCH_NAME: &str = "your decisions unchanged";
 
-/// Returns the name of a branch, which lists its edits.
+/// Returns the name of a branch: a list of its edits.
 pub fn branch_name(edits: &[DecisionEdit]) -> String {
     match edits {
         [] => UNCHANGED_BRANCH_NAME.to_owned(),

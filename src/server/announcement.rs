@@ -9,7 +9,7 @@ use novamind_record::error::RunError;
 use novamind_record::files::write_atomically;
 use novamind_record::folder::lock::SERVER_FILE;
 
-/// The address at which a server plays a run.
+/// The address of a server, and the run that it plays.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Announcement {
     /// ID of the served run.

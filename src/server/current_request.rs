@@ -34,7 +34,7 @@ impl CurrentRequest {
         self.stop_if(|_| true);
     }
 
-    /// Returns a guard that stops the request if the guard is dropped before the response.
+    /// Returns a guard that stops the request when it is dropped, unless the response was received first.
     pub fn watch(&self, number: u64) -> RequestWatch {
         RequestWatch { running: self.clone(), number, is_answered: false }
     }

@@ -16,17 +16,17 @@ const MAX_FILE_BYTES: u64 = 512 << 20;
 /// The calls of this program's tools in an external transcript, with the settings of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForeignTranscript {
-    /// Name of the player, if the transcript contains a name.
+    /// Name of the player; `None` if the transcript does not contain it.
     pub player: Option<String>,
-    /// Seed of the run, if the transcript contains the seed.
+    /// Seed of the run; `None` if the transcript does not contain it.
     pub seed: Option<u64>,
-    /// Name of the scenario, if the transcript contains the name.
+    /// Name of the scenario; `None` if the transcript does not contain it.
     pub scenario: Option<String>,
-    /// Last day of the run, if the transcript contains the day.
+    /// Last day of the run; `None` if the transcript does not contain it.
     pub days: Option<u32>,
-    /// Cash on day 0 in dollars, if the transcript contains the cash.
+    /// Cash on day 0 in dollars; `None` if the transcript does not contain it.
     pub cash: Option<f64>,
-    /// Hash of the final state, if the transcript contains the hash.
+    /// Hash of the final state; `None` if the transcript does not contain it.
     pub state_hash: Option<String>,
     /// Tool calls in the order of the transcript.
     pub calls: Vec<ForeignCall>,
@@ -41,7 +41,7 @@ pub struct ForeignCall {
     pub tool: String,
     /// Arguments of the call.
     pub arguments: Map<String, Value>,
-    /// Whether the call was accepted, if the transcript contains this information.
+    /// Whether the call was accepted; `None` if the transcript does not say so clearly.
     pub accepted: Option<bool>,
 }
 

@@ -22,7 +22,7 @@ use novamind_tools::NotebookSection;
 /// Function that receives reports of internal errors.
 pub type OnDefect = fn(&str);
 
-/// Properties of an interface that uses a session.
+/// How an interface is recorded, and where it reports internal errors.
 #[derive(Clone, Copy)]
 pub struct InterfaceInfo {
     /// How the record names the interface in tool calls.
@@ -33,7 +33,7 @@ pub struct InterfaceInfo {
     pub on_defect: OnDefect,
 }
 
-/// A request and the channel for its response.
+/// A request, and the channel on which its response is sent.
 struct QueuedRequest {
     number: u64,
     request: ApiRequest,

@@ -168,7 +168,7 @@ impl Read for Frames<'_> {
     }
 }
 
-/// Returns the offset of the end record. The record stores the length of the comment that follows it.
+/// Returns the offset of the end record. It is followed by a comment, whose length it stores.
 fn end_record(bytes: &[u8]) -> Option<usize> {
     let last = bytes.len().checked_sub(END_RECORD_BYTES)?;
     let first = last.saturating_sub(usize::from(u16::MAX));

@@ -46,7 +46,7 @@ pub struct Canvas<'a> {
     pub empty_chart_text: &'static str,
     /// Characters for drawing curves.
     pub marker: Marker,
-    /// Breadcrumbs that are shown before the title of the focused pane.
+    /// Breadcrumbs, which are shown before the title of the focused pane.
     pub breadcrumbs: Vec<String>,
 }
 
@@ -124,7 +124,7 @@ impl<'a> Canvas<'a> {
             return;
         }
         self.buffer.set_line(area.x, area.y, line, area.width);
-        // Spaces at the end align columns and may be cut without a mark.
+        // Trailing spaces only align columns, so they may be cut without an ellipsis.
         let text: String = line.spans.iter().map(|span| span.content.as_ref()).collect();
         if text.trim_end().width() > area.width as usize {
             let kept = truncate_to_width(&text, area.width as usize).width().max(1) as u16;

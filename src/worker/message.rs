@@ -27,7 +27,7 @@ pub enum Message {
     Signal(i32),
     /// The user's editor has ended: the edited text, or the reason why the text is unchanged.
     EditorClosed(Result<String, String>),
-    /// The time after which the console wants to redraw has passed.
+    /// The delay until the next scheduled redraw has passed.
     RedrawDue,
 }
 
@@ -106,7 +106,7 @@ pub enum Response {
     TimeLeft(Vec<TimeLeft>),
     /// A time limit is near or reached.
     Limit(Limit),
-    /// The run was opened with a clock that a time limit had stopped.
+    /// A run was opened whose clock a time limit had stopped.
     ClockStopped,
     /// Drafts of the opened run that were saved before the program stopped.
     Drafts(Box<DraftTexts>),
@@ -132,13 +132,13 @@ pub enum Response {
     DebriefReady(Arc<Result<Debrief, Rejection>>),
     /// The notes were saved, or saving failed.
     NotesSaved(Result<(), Rejection>, Arc<DisplayedCompany>),
-    /// A query was saved, with a message and the new library, or saving failed.
+    /// A query was saved, or saving failed. Contains a message and the new library.
     QuerySaved(Result<(String, QueryLibrary), String>),
     /// The run report was built.
     RunReportReady(Arc<RunReport>),
-    /// The files of the run report were rendered, with their names and contents.
+    /// The files of the run report were rendered. Contains their names and contents.
     ReportFilesReady(Vec<(&'static str, String)>),
-    /// Files were written, with a message, or writing failed.
+    /// Files were written, or writing failed. Contains a message.
     FilesWritten(Result<String, String>),
     /// An external program of the user ended. Contains a title and the output of the program, or the error if the
     /// program did not end normally.

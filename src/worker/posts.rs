@@ -31,7 +31,7 @@ impl PostKind {
         }
     }
 
-    /// Returns the name of the kind on screens.
+    /// Returns the name that screens show for the kind.
     pub fn name(self) -> &'static str {
         match self {
             PostKind::Customers => "customers",
@@ -91,7 +91,7 @@ impl Post {
     }
 }
 
-/// Posts of other authors, newest first. Successive readings share unchanged posts.
+/// Posts of other authors, newest first. Successive calls share unchanged posts.
 pub type Posts = Arc<Vec<Arc<Post>>>;
 
 /// Initial limit on the number of new posts to read, usually more than are published in a week.

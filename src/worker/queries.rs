@@ -19,14 +19,14 @@ use novamind_tools::Rejection;
 pub struct Query {
     /// Statement as the user entered or selected it, before the permission check.
     pub sql: String,
-    /// The tables that the statement can read.
+    /// Tables that the statement is permitted to read.
     pub tables: QueriedTables,
 }
 
-/// The tables that a query of the user can read.
+/// The tables that a query of the user is permitted to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QueriedTables {
-    /// The public tables. Contains the source of the query.
+    /// The public tables. The query is recorded with this source.
     Visible(QuerySource),
     /// The public tables and the hidden tables.
     Hidden,

@@ -42,7 +42,7 @@ pub enum Request {
     },
     /// Create a branch from the current position of the playback and play the branch.
     TakeOver(Mode),
-    /// Create a branch that keeps the decisions of the run except for some edits, and play the branch.
+    /// Create a branch with the decisions of the run as changed by `edits`, and play the branch.
     AdoptBranch {
         /// First week in which the branch differs from the run.
         week: u32,

@@ -66,14 +66,14 @@ pub enum ClassFinding {
         /// Label of the student.
         label: String,
     },
-    /// A student who has not finished every part of the lesson.
+    /// A student with unfinished parts of the lesson.
     NotFinished {
         /// Label of the student.
         label: String,
         /// Numbers of the unfinished parts, counted from 1.
         parts: Vec<u32>,
     },
-    /// A handout in the folder of the class that was changed.
+    /// A changed handout in the folder of the class.
     AlteredHandout {
         /// Label of the student.
         label: String,

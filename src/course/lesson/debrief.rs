@@ -35,7 +35,7 @@ pub struct FinishedPart {
     calls: Vec<ScheduledCalls>,
 }
 
-/// The results of a part, with the reference play and the pitfall play on the same seed.
+/// The results of a part, compared with the reference play and the pitfall play on the same seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Debrief {
     /// Title of the lesson.
@@ -105,7 +105,7 @@ pub struct JudgedFigure {
 /// Result of comparing the student's decisions with the reference play.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionComparison {
-    /// The decisions differ, first in this week.
+    /// The decisions differ. Contains the first week in which they do.
     Different(FirstDifference),
     /// The decisions are the same in every week.
     Same,
@@ -115,7 +115,7 @@ pub enum DecisionComparison {
     NotComparable,
 }
 
-/// The first week in which the decisions differ from the reference play.
+/// The first week in which the student's decisions differ from those of the reference play.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FirstDifference {
     /// Week of the run, counted from 1.

@@ -162,7 +162,7 @@ fn goal_statuses(
 }
 
 impl GoalStatus {
-    /// Creates the status of a goal, including the result of a judged goal.
+    /// Creates the status of a goal, with its result if it has been judged.
     pub(super) fn new(
         lesson_progress: &LessonProgress,
         goal: &LessonGoal,

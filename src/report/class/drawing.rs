@@ -22,7 +22,7 @@ pub(super) struct PointDrawing<'a> {
     pub points: &'a [StudentPoints<'a>],
     /// Whether lines connect the points of a student.
     pub is_line: bool,
-    /// Whether the diagonal of equal values is drawn.
+    /// Whether the diagonal is drawn, on which both values are equal.
     pub has_diagonal: bool,
 }
 

@@ -32,7 +32,7 @@ pub(super) struct RouteState {
     served: ServedRun,
 }
 
-/// The id of the served run, and the notification that stops the server.
+/// The served run, and how to stop its server.
 #[derive(Clone)]
 pub struct ServedRun {
     /// ID of the served run.

@@ -28,7 +28,7 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// Role that determines the color of the curve.
     pub role: Role,
-    /// Whether separate points are drawn instead of a line.
+    /// Whether the points are drawn separately, not connected by a line.
     pub is_scatter: bool,
     /// Name that is drawn at the end of the curve if there is space; empty for no name.
     pub name: &'static str,

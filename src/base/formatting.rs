@@ -95,7 +95,8 @@ pub fn price_to_cents(value: f64) -> String {
     if value.fract() == 0.0 { dollars(value) } else { dollars_and_cents(value) }
 }
 
-/// Formats an amount with a minus sign before the dollar sign. Amounts that round to zero have no sign.
+/// Formats dollars with a minus sign before the dollar sign if the amount is negative. Amounts that round to zero have
+/// no sign.
 fn dollars_with_decimals(value: f64, decimals: usize) -> String {
     let text = grouped_number(value.abs(), decimals);
     let rounds_to_zero = text.chars().all(|letter| matches!(letter, '0' | '.'));

@@ -21,7 +21,7 @@ pub const MIN_SAMPLE_SIZE: usize = 6;
 pub struct SampleStatistics {
     /// Sample size.
     pub count: usize,
-    /// Mean of the sample.
+    /// Arithmetic mean, or 0 for an empty sample.
     pub mean: f64,
     /// Sample standard deviation with divisor n - 1, or 0 for fewer than two values.
     pub std: f64,

@@ -24,6 +24,6 @@ pub use lesson::status::{GoalStatus, LessonQuestion, LessonStatus};
 pub use novamind_record::lesson::{
     CapacityControl, ForecastRequirement, GoalBound, Guess, GuessForm, Lesson, LessonAccess, LessonCall,
     LessonGoal, LessonPart, LessonPlan, LessonProgress, LessonStep, MEASURED_SEEDS, MeasuredFigure,
-    Measurement, NumberSource, Pitfall, PitfallBound, RationaleRequirement, ReferencePlay, ScheduledCalls,
-    WeekAggregation,
+    MeasurementSpec, NumberSource, Pitfall, PitfallBound, RationaleRequirement, ReferencePlay,
+    ScheduledCalls, WeekAggregation,
 };

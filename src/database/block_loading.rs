@@ -1,5 +1,5 @@
-//! Loads packed days from the database file: all tables for the writer, single tables for queries on a file without a
-//! writer.
+//! Loads packed days from the database file. The writer loads all tables. Queries on a file that has no writer in this
+//! process load only the tables that their statements name.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;

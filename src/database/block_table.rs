@@ -47,7 +47,7 @@ trait BlockTableDefinition: Send + Sync + Sized + 'static {
 
     fn days(store: &BlockStore) -> &[Arc<PackedDay>];
     fn indexes(query_view: &QueryView) -> &CustomerIndexes<Self::Run>;
-    /// Sets the result to a column that is neither the day, the customer nor the row number.
+    /// Sets the result to the value of a column other than the day, the customer and the row number.
     fn column(
         at: (&BlockStore, u32),
         row: RowData<Self>,

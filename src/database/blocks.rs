@@ -11,7 +11,7 @@ use super::text_index::TextIndexes;
 use novamind_world::events::{AdsRevenueRow, UsageRows};
 use novamind_world::identifiers::Group;
 
-/// Ad revenue of customers of one group, in ascending order of customer numbers.
+/// Ad revenue from customers of one group, in ascending order of customer numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AdsRun {
     pub group: Group,
@@ -20,7 +20,7 @@ pub(super) struct AdsRun {
     pub revenues: Vec<f64>,
 }
 
-/// The columns of `ads_revenue` except day and customer.
+/// The values of an `ads_revenue` row except day and customer.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct AdsRow {
     pub group: Option<Group>,

@@ -41,7 +41,7 @@ pub struct Column {
     /// All possible values of the column, if they are few.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub values: Vec<String>,
-    /// Description of the column.
+    /// Text that explains the column in the schema browser and in SQL help.
     pub description: String,
 }
 

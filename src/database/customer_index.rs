@@ -48,7 +48,7 @@ impl<R: RowRun> CustomerIndex<R> {
         Some(CustomerIndex { first_customer: customers.start, row_starts: begins, numbers, rows })
     }
 
-    /// Returns the positions of the rows of a customer.
+    /// Returns the positions in `numbers` and `rows` that belong to a customer.
     pub fn row_range(&self, customer: f64) -> Range<usize> {
         let at = customer - f64::from(self.first_customer);
         if at.fract() != 0.0 || !(0.0..(self.row_starts.len() - 1) as f64).contains(&at) {

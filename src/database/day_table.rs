@@ -40,7 +40,7 @@ pub(super) trait DayTableDefinition: Send + Sync + Sized + 'static {
     const TEXT_COLUMN: c_int;
     fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str>;
     fn texts(query_view: &QueryView) -> &TextIndexes;
-    /// Sets the result to a table-specific column: a column after the third and before the last.
+    /// Sets the result to the value of a table-specific column, which is a column after the third and before the last.
     fn column(_: &DayRow<'_, Self>, _: c_int, _: &mut Context) -> rusqlite::Result<()> {
         Ok(())
     }
@@ -221,12 +221,12 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
         let order =
             columns.filter(|columns| !columns.is_empty()).and_then(|columns| RowOrder::for_columns(&columns));
         info.set_order_by_consumed(order.is_some());
-        let share = |column: c_int, of_equal: f64, of_other: f64| {
+        let share = |column: c_int, equal_share: f64, other_share: f64| {
             let constraints = handled.iter().filter(|(_, constraint)| constraint.column == column);
             constraints
                 .map(
                     |(_, constraint)| {
-                        if constraint.comparison == Comparison::Equal { of_equal } else { of_other }
+                        if constraint.comparison == Comparison::Equal { equal_share } else { other_share }
                     },
                 )
                 .fold(1.0, f64::min)
@@ -331,9 +331,9 @@ impl<K: DayTableDefinition> DayCursor<'_, K> {
     }
 
     fn row_at(&self, day: usize, place: u64, kinds: KindSet) -> Option<DayRow<'_, K>> {
-        let of_day = &*K::days(&self.store)[day];
-        let unpacked = self.unpacked.get(day)?.get_or_init(|| K::unpack(of_day, kinds));
-        Some(DayRow { store: &self.store, day: of_day, unpacked, place })
+        let packed_day = &*K::days(&self.store)[day];
+        let unpacked = self.unpacked.get(day)?.get_or_init(|| K::unpack(packed_day, kinds));
+        Some(DayRow { store: &self.store, day: packed_day, unpacked, place })
     }
 
     /// Returns the kinds that must be unpacked to read the rows of a pass.

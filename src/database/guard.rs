@@ -118,12 +118,12 @@ pub(super) fn is_engine_table(name: &str) -> bool {
 }
 
 /// Returns the visible table whose rows an internal table stores.
-pub(super) fn visible_table_of(inside: &str) -> Option<&'static str> {
+pub(super) fn find_visible_table(internal_table: &str) -> Option<&'static str> {
     let table = catalogue::tables(Interface::Release1).iter().find(|table| {
-        let stem = inside.strip_suffix("_rows").unwrap_or(inside);
+        let stem = internal_table.strip_suffix("_rows").unwrap_or(internal_table);
         table.name.strip_suffix('s').unwrap_or(&table.name) == stem
     });
-    table.map(|table| table.name.as_str()).filter(|_| is_internal_table(inside))
+    table.map(|table| table.name.as_str()).filter(|_| is_internal_table(internal_table))
 }
 
 /// Returns whether the table with this name is internal, ignoring case.
@@ -255,7 +255,7 @@ impl Guard {
         })
     }
 
-    /// Returns a guard without internal tables.
+    /// Returns a guard for a connection that has no internal tables.
     pub fn for_ordinary_tables(connection: &Connection, surface: Surface) -> rusqlite::Result<Guard> {
         let existing = existing_names(connection)?;
         Ok(Guard {
@@ -319,7 +319,7 @@ impl Guard {
 
     fn check_read(&self, table: &str, column: &str, accessor: Option<&str>) -> Option<RejectionReason> {
         let name = table.to_lowercase();
-        let inside = INTERNAL_TABLES.iter().find(|(table, _)| *table == name);
+        let internal_table = INTERNAL_TABLES.iter().find(|(table, _)| *table == name);
         let is_inner_view =
             |name: &str| self.views.as_ref().is_some_and(|views| name.starts_with(&views.secret));
         self.record_read(&name, column);
@@ -334,7 +334,7 @@ impl Guard {
         // If no column is read, the statement only counts rows of a common table expression or of a view that the
         // planner has flattened. Any other table that exists and is not listed is rejected.
         let counted = column.is_empty()
-            && match inside {
+            && match internal_table {
                 Some((_, behind_view)) => *behind_view,
                 None => !self.existing.contains(&name),
             };
@@ -402,7 +402,7 @@ mod tests {
             Guard::for_ordinary_tables(&connection, surface).expect("a guard"),
         ];
         for guard in guards {
-            let objections = guard.last_rejection();
+            let rejections = guard.last_rejection();
             let authorizer = move |context: AuthContext<'_>| guard.authorize(&context);
             connection.authorizer(Some(authorizer)).expect("an authorizer");
             let is_allowed = |sql: &str| connection.prepare(sql).is_ok();
@@ -414,9 +414,9 @@ mod tests {
                 "SELECT count(*) FROM ledger WHERE 0 < (SELECT count(*) FROM added_later)",
                 "WITH x AS (SELECT 1 FROM added_later) SELECT count(*) FROM x",
             ] {
-                objections.clear();
+                rejections.clear();
                 assert!(!is_allowed(refused), "{refused}");
-                assert_eq!(objections.get(), RejectionReason::HiddenTable, "{refused}");
+                assert_eq!(rejections.get(), RejectionReason::HiddenTable, "{refused}");
             }
             for allowed in [
                 "SELECT count(*) FROM ledger",

@@ -20,7 +20,7 @@ pub(super) struct IssueRun {
     pub solved: Vec<u32>,
 }
 
-/// The columns of `issues` except day and customer.
+/// The values of an `issues` row except day and customer.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct IssueRow {
     pub issue: u32,
@@ -79,7 +79,7 @@ impl RowRun for IssueRun {
     }
 }
 
-/// Columns of the table `issues`.
+/// Indexes of the columns of the table `issues`.
 pub(super) mod column {
     use std::ffi::c_int;
 
@@ -92,7 +92,7 @@ pub(super) mod column {
     pub const SOLVED_DAY: c_int = 6;
 }
 
-/// Sets the result to a column of an issue. The age is computed with the issue clock.
+/// Sets the result to the value of a column of an issue. The age is computed with the issue clock.
 pub(super) fn write_column(
     (clock, day): (&[u32], u32),
     row: IssueRow,

@@ -32,11 +32,11 @@ pub(super) fn type_index(notice: &Notice) -> u8 {
 /// A lost lead that is reported again every day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct RepeatedLoss {
-    /// Number of the lost customer.
+    /// Customer number of the lost lead.
     pub customer: u32,
     /// Day of the unanswered message.
     pub message_day: u32,
-    /// Cause of the loss.
+    /// Side whose silence caused the loss.
     pub cause: LossCause,
 }
 
@@ -275,7 +275,7 @@ fn split_numbers(text: &str) -> (String, Vec<u64>) {
     (pattern, numbers)
 }
 
-/// All notices of the inbox.
+/// The inbox of a run: the notices of each day, and the losses that days repeat.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Inbox {
     /// Days with notices, in order.

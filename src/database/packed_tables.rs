@@ -18,11 +18,11 @@ use super::packing::KindSet;
 use super::text_index::TextIndexes;
 
 /// Registers the tables `ledger` and `notifications` on a connection.
-pub(super) fn register(connection: &Connection, seen: &Arc<QueryView>) -> rusqlite::Result<()> {
+pub(super) fn register(connection: &Connection, query_view: &Arc<QueryView>) -> rusqlite::Result<()> {
     const NOTICES: Module<'static, DayTable<Notifications>> = Module::eponymous_only_module();
     const LEDGER: Module<'static, DayTable<Ledger>> = Module::eponymous_only_module();
-    connection.create_module(c"notifications", &NOTICES, Some(seen.clone()))?;
-    connection.create_module(c"ledger", &LEDGER, Some(seen.clone()))
+    connection.create_module(c"notifications", &NOTICES, Some(query_view.clone()))?;
+    connection.create_module(c"ledger", &LEDGER, Some(query_view.clone()))
 }
 
 /// Definition of the table `ledger`.
@@ -68,8 +68,8 @@ impl DayTableDefinition for Ledger {
         }
     }
 
-    fn texts(seen: &QueryView) -> &TextIndexes {
-        &seen.ledger_notes
+    fn texts(query_view: &QueryView) -> &TextIndexes {
+        &query_view.ledger_notes
     }
 
     fn column(row: &DayRow<'_, Self>, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
@@ -125,7 +125,7 @@ impl DayTableDefinition for Notifications {
         }
     }
 
-    fn texts(seen: &QueryView) -> &TextIndexes {
-        &seen.notice_texts
+    fn texts(query_view: &QueryView) -> &TextIndexes {
+        &query_view.notice_texts
     }
 }

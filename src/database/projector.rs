@@ -121,13 +121,13 @@ impl Projector {
             .spawn(move || {
                 let rows = RowWriter::new(params, writer_store);
                 let connection = &mut connection;
-                let readers_go_on = uses_write_ahead_log(connection);
+                let has_write_ahead_log = uses_write_ahead_log(connection);
                 let (gate, spare, failed) = (writer_gate, writer_spare, writer_failed);
                 ProjectionWriter {
                     connection,
                     rows,
                     gate,
-                    readers_are_not_blocked: readers_go_on,
+                    readers_are_not_blocked: has_write_ahead_log,
                     spare,
                     failed,
                     to_error: map_error,
@@ -244,7 +244,7 @@ struct ProjectionWriter<'a> {
     to_error: fn(rusqlite::Error) -> ProjectionError,
 }
 
-/// Cleared facts that are no longer in use.
+/// Cleared facts whose memory the simulation can reuse.
 #[derive(Clone, Default)]
 struct FactsPool(Arc<Mutex<Vec<Arc<Facts>>>>);
 
@@ -367,8 +367,8 @@ fn open_existing(
     Some((connection, Some(position)))
 }
 
-/// Opens a query connection to a database without a writer. `interface` is the release that its run follows. Also
-/// returns the position of the database.
+/// Opens a connection for queries on a database that no [`Projector`] writes. `interface` is the release that the run
+/// follows. Also returns the trajectory position that the database stores.
 ///
 /// # Errors
 /// The database does not exist, or is not the database of a run.

@@ -358,9 +358,9 @@ impl QueryConnection {
     }
 
     pub(super) fn fault_to_error(&self, sql: &str, fault: QueryFault, limits: QueryLimits) -> QueryError {
-        let objection = match self.released.last_rejection() {
+        let rejection = match self.released.last_rejection() {
             RejectionReason::None => self.last_rejection.get(),
-            objection => objection,
+            rejection => rejection,
         };
         match fault {
             QueryFault::Empty => query_error("sql_empty", "no SQL was given"),
@@ -383,14 +383,14 @@ impl QueryConnection {
                 let max = MAX_RESULT_TEXT_BYTES >> 20;
                 query_error("sql_error", &format!("the result is larger than {max} MiB; select less data"))
             }
-            QueryFault::Sqlite(_) if objection == RejectionReason::Write || is_write_statement(sql) => {
+            QueryFault::Sqlite(_) if rejection == RejectionReason::Write || is_write_statement(sql) => {
                 write_error()
             }
-            QueryFault::Sqlite(_) if objection == RejectionReason::Schema => {
+            QueryFault::Sqlite(_) if rejection == RejectionReason::Schema => {
                 query_error("sql_schema", SCHEMA_MESSAGE)
             }
-            QueryFault::Sqlite(_) if objection == RejectionReason::HiddenTable => hidden_table_error(None),
-            QueryFault::Sqlite(_) if objection == RejectionReason::HiddenColumn => query_error(
+            QueryFault::Sqlite(_) if rejection == RejectionReason::HiddenTable => hidden_table_error(None),
+            QueryFault::Sqlite(_) if rejection == RejectionReason::HiddenColumn => query_error(
                 "sql_hidden_table",
                 "main.TABLE has hidden columns; write the table without main, or name the columns to read",
             ),

@@ -1,7 +1,7 @@
 //! Query plans for users. The names of internal tables are masked.
 
 use super::catalogue::{table, tables};
-use super::guard::visible_table_of;
+use super::guard::find_visible_table;
 use super::query_result::{Cell, text_at};
 use super::tokens::tokenize;
 use novamind_world::params::Interface;
@@ -61,7 +61,7 @@ fn mask_word<'a>(word: &'a str, sql: &str) -> &'a str {
         let mut columns = tables(Interface::Release1).iter().flat_map(|table| &table.columns);
         columns.any(|column| column.name.eq_ignore_ascii_case(word))
     };
-    let asked = || {
+    let occurs_in_statement = || {
         let mut contents = tokenize(sql).into_iter().map(|token| token.unquoted());
         contents.any(|content| content.split(|letter| !is_word_character(letter)).any(|text| text == word))
     };
@@ -69,11 +69,11 @@ fn mask_word<'a>(word: &'a str, sql: &str) -> &'a str {
         || LOWERCASE_WORDS.contains(&word)
         || table(Interface::Release1, word).is_some()
         || column()
-        || asked()
+        || occurs_in_statement()
     {
         return word;
     }
-    visible_table_of(word).unwrap_or(MASK)
+    find_visible_table(word).unwrap_or(MASK)
 }
 
 #[cfg(test)]

@@ -44,9 +44,9 @@ pub struct QueryResult {
     pub rows: Vec<Vec<Cell>>,
     /// Whether more rows exist than were returned.
     pub truncated: bool,
-    /// Warning if the result is truncated.
+    /// Warning that the result is truncated; otherwise `None`.
     pub warning: Option<String>,
-    /// Possible reason why the result is empty.
+    /// Possible reason why the result is empty, if one was found.
     pub hint: Option<String>,
 }
 

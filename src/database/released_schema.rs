@@ -95,14 +95,14 @@ impl ReleasedSchema {
         connection.pragma_update(None, "query_only", true)?;
         set_limits(&connection)?;
         let guard = Guard::for_ordinary_tables(&connection, surface)?;
-        let (objections, reads) = (guard.last_rejection(), guard.column_reads());
+        let (rejections, reads) = (guard.last_rejection(), guard.column_reads());
         connection.authorizer(Some(move |context: AuthContext<'_>| -> Authorization {
             guard.authorize(&context)
         }))?;
         Ok(ReleasedSchema {
             connection,
             interface: surface.interface,
-            last_rejection: objections,
+            last_rejection: rejections,
             reads,
             with_hidden_columns: None,
         })

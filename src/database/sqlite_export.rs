@@ -51,7 +51,7 @@ DROP TABLE repeated_losses;";
 const PAGES_PER_STEP: i32 = 4096;
 
 impl Projector {
-    /// Writes all entries received so far to a new file that any SQLite tool can open.
+    /// Writes all entries that the projector has received to a new file that any SQLite tool can open.
     ///
     /// # Errors
     /// The database could not be written, or the file cannot be created.
@@ -115,8 +115,8 @@ fn write_sqlite_file(
 /// Casts `subscriptions.effective_price` in the view. When SQLite before 3.52 sorts complete rows, it returns whole
 /// numbers of a generated column as integers.
 fn declare_price_type(transaction: &Transaction<'_>) -> rusqlite::Result<()> {
-    let of_view = "SELECT sql FROM sqlite_schema WHERE type = 'view' AND name = 'subscriptions'";
-    let view: String = transaction.query_row(of_view, [], |row| row.get(0))?;
+    let view_query = "SELECT sql FROM sqlite_schema WHERE type = 'view' AND name = 'subscriptions'";
+    let view: String = transaction.query_row(view_query, [], |row| row.get(0))?;
     let typed = view.replace("    effective_price,", "    CAST(effective_price AS REAL) AS effective_price,");
     transaction.execute_batch(&format!("DROP VIEW subscriptions;\n{typed}"))
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 
 /// Maximum total size in bytes of the indexes of a table that are built for one statement.
 const MAX_INDEX_BYTES: usize = 256 << 20;
-/// Number of lookups without an index. Building an index costs little more than two scans.
+/// Number of lookups in the same days before an index is built. Building an index costs little more than two scans.
 const LOOKUPS_BEFORE_INDEX: usize = 2;
 
 /// The hash of a row's text and the position of the row: index of the day, and position within the day.

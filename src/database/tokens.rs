@@ -20,7 +20,7 @@ pub(super) enum TokenKind {
 /// A token of a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Token<'a> {
-    /// Kind of the token.
+    /// Whether the token is a name, a text, a number or a symbol.
     pub kind: TokenKind,
     /// Source text of the token.
     pub text: &'a str,

@@ -22,9 +22,9 @@ pub struct Explanation {
     pub title: String,
     /// Category of the subject, for example `argument of set_prices`.
     pub note: String,
-    /// Sections of the explanation that are not empty.
+    /// Non-empty sections, in display order.
     pub sections: Vec<Section>,
-    /// Subjects that are related to the explained subject.
+    /// Related subjects, listed after the sections.
     pub related: Vec<Subject>,
     /// Action names of the screens and dialogs that show the subject.
     pub places: &'static [String],

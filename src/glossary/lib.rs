@@ -23,7 +23,7 @@ pub struct Term {
     pub topic: String,
     /// Display name of the term.
     pub title: String,
-    /// Synonyms of the term.
+    /// Synonyms under which the term can also be found.
     #[serde(default)]
     pub aka: Vec<String>,
     /// Definition of the term in one sentence.
@@ -65,7 +65,7 @@ pub fn term(id: &str) -> Option<&'static Term> {
     TERMS.iter().find(|term| term.id == id)
 }
 
-/// Returns the terms that are shown on the screen or dialog with this action name.
+/// Returns the terms that the screen or dialog with this action name shows.
 pub fn terms_shown_on(place: &str) -> impl Iterator<Item = &'static Term> {
     TERMS.iter().filter(move |term| term.places.iter().any(|text| text == place))
 }

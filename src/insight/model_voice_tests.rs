@@ -15,7 +15,7 @@ use novamind_record::trajectory::Trajectory;
 use novamind_record::trajectory::record::{Record, Via, VoiceAnswer};
 use novamind_session::{NewRun, Origin, Session, Storage, StubBehavior, StubModel, read_origin, verify};
 
-/// Plays three weeks of a company with customers, with a post before the second week.
+/// Plays three weeks of a company with customers, and publishes a post before the second week.
 fn play_three_weeks(runs: &Path, configuration: &Configuration) -> Session {
     let new = NewRun {
         seed: Some(7),

@@ -81,7 +81,7 @@ impl ReplayedWorld {
     }
 }
 
-/// Returns whether a lesson starts with simulated weeks or preset decisions.
+/// Returns whether the lesson part of a run starts with simulated weeks or preset decisions.
 fn has_preset_decisions(folder: &Path, manifest: &Manifest) -> Result<bool, RunError> {
     let Some(stamp) = &manifest.lesson else { return Ok(false) };
     let lesson = Lesson::from_run(folder, &stamp.name)?;

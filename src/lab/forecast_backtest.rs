@@ -1,5 +1,5 @@
-//! Back-test of the outlook: plays companies, and compares the cash that was expected before each week with
-//! the actual cash.
+//! Back-test of the outlook: companies are played, and the cash that the outlook expected before each week is compared
+//! with the actual cash.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -23,7 +23,7 @@ pub fn forecast_horizons() -> Vec<u32> {
 /// The forecasts for a company, with their outcomes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompanyForecasts {
-    /// Name of the policy or recorded run.
+    /// Name of the policy or of the recorded run.
     pub name: String,
     forecasts: Vec<PastForecast>,
 }
@@ -36,7 +36,7 @@ struct PastForecast {
     expected: f64,
     /// Amount to which errors are proportional, dollars.
     scale: f64,
-    /// Ranges of cash, by level, dollars.
+    /// Ends of the cash range of each level, dollars.
     ranges: [(f64, f64); 2],
     /// Cash at the end of the week that ends on the due day, or 0 after a bankruptcy, dollars.
     outcome: f64,
@@ -44,12 +44,12 @@ struct PastForecast {
     turnover: f64,
 }
 
-/// Results for a stage and a horizon.
+/// The results of the forecasts for one growth stage and one horizon.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StageResult {
     /// Number of companies with forecasts.
     pub companies: usize,
-    /// Number of forecasts.
+    /// Number of forecasts whose outcome is known.
     pub forecasts: usize,
     /// Mean absolute error, as a share of income and costs until the horizon.
     pub mean_error: f64,

@@ -9,22 +9,22 @@ use serde::Deserialize;
 use super::metrics::MetricValue;
 use novamind_base::statistics::{SampleStatistics, median};
 
-/// Key of a compared cell: figure, group, checkpoint day.
+/// The key of a compared cell: figure, group, checkpoint day.
 type CellKey = (String, String, u32);
 
-/// Golden figures of the released simulator under one policy.
+/// The golden figures of the released simulator under one policy.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReferenceFigures {
     /// Name of the policy.
     pub policy: String,
     /// Mean, standard deviation and number of seeds, by cell.
     pub cells: BTreeMap<CellKey, SampleStatistics>,
-    /// Values of the single seeds, by cell, if the reference contains them. Figures that are compared as
-    /// logarithms need these values.
+    /// Values of all seeds, by cell; empty if the reference does not contain these values. Figures that are compared as
+    /// logarithms need them.
     per_seed: BTreeMap<CellKey, Vec<f64>>,
 }
 
-/// Reason why reference figures cannot be read.
+/// The reason why reference figures cannot be read.
 #[derive(Debug)]
 pub struct GoldenError {
     path: PathBuf,
@@ -120,8 +120,7 @@ struct ReferenceFile {
     scenario: String,
 }
 
-/// Returns the scenario that is named in a reference folder's `reference.toml`, or `None` if the folder has
-/// no such file.
+/// Returns the scenario that a reference folder's `reference.toml` names, or `None` if the folder has no such file.
 ///
 /// # Errors
 /// Fails if the file cannot be read or is invalid.
@@ -158,7 +157,7 @@ fn read_table<const WIDTH: usize>(
 /// A compared cell: one figure of a group on a checkpoint day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparedCell {
-    /// Name of the figure.
+    /// Name of the figure, as listed in docs/interfaces/golden.md#figures.
     pub figure: String,
     /// Group of the figure; empty for the whole company.
     pub group: String,

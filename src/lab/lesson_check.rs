@@ -1,5 +1,5 @@
-//! Checks a lesson on six seeds. The reference play must reach every goal. The pitfall play must miss a goal and trigger
-//! its pitfall. The figures in the texts must be correct.
+//! Check of a lesson on six seeds. The reference play must reach every goal. The pitfall play must miss a goal and
+//! trigger its pitfall. The figures in the texts must be correct.
 
 use std::sync::Arc;
 
@@ -29,9 +29,9 @@ pub struct PlayResult {
 pub struct GoalResult {
     /// Text of the lesson goal.
     pub text: String,
-    /// Measured value of the goal, if any.
+    /// Measured value of the goal; `None` if the goal has no measured value.
     pub value: Option<f64>,
-    /// Target value of the goal, if any.
+    /// Target value of the goal; `None` if the goal has no target value.
     pub target: Option<f64>,
     /// Whether the play reached the goal.
     pub is_met: bool,

@@ -24,19 +24,19 @@ use novamind_tools::{Answer, Rejection, ToolId};
 pub struct RunSpec {
     /// Seed of all random draws.
     pub seed: u64,
-    /// Last day of the run, which affects the mechanics.
+    /// Last day of the run, which affects the mechanics; `None` to use the value of the policy or scenario.
     pub days: Option<u32>,
-    /// Day after which the run is stopped.
+    /// Day after which the run is stopped; `None` to play the run to its end.
     pub stop_after_day: Option<u32>,
     /// Whether demand surges occur; `None` to use the value of the policy or scenario.
     pub surges: Option<bool>,
-    /// Cash on day 0, dollars.
+    /// Cash on day 0, dollars; `None` to use the value of the policy or scenario.
     pub cash: Option<f64>,
-    /// Name of the scenario.
+    /// Name of the scenario; `None` to use the scenario of the policy or the default scenario.
     pub scenario: Option<String>,
     /// Overrides of single parameters, as `(table.key, value)`.
     pub overrides: Vec<(String, String)>,
-    /// Folder in which the run is saved.
+    /// Folder in which the run is saved; `None` if the run is not saved.
     pub save_folder: Option<PathBuf>,
     /// Whether a saved run includes its database.
     pub saves_database: bool,
@@ -94,9 +94,9 @@ pub struct PolicyRunOutcome {
     pub state_hash: String,
     /// Whether demand surges are possible.
     pub surges: bool,
-    /// Name of the saved run, if any.
+    /// Name of the saved run; `None` if the run was not saved.
     pub run: Option<String>,
-    /// Duration of the run, seconds.
+    /// Time that it took to play the run, seconds.
     pub seconds: f64,
 }
 
@@ -136,7 +136,7 @@ pub enum RunError {
         seed: u64,
         /// Decision day of the rejected call.
         day: u32,
-        /// Name of the rejected tool.
+        /// Name of the tool that rejected the call.
         tool: String,
         /// Reason for the rejection.
         rejection: Box<Rejection>,

@@ -10,7 +10,7 @@ const MAX_SEEDS: u64 = 1_000_000;
 pub struct SeedRange {
     /// First seed of the range.
     pub first: u64,
-    /// Last seed of the range.
+    /// Last seed of the range, inclusive.
     pub last: u64,
 }
 

@@ -24,7 +24,7 @@ struct PolicyNumbers {
     /// Budgets for development and ads by group, $ per day.
     development: Vec<(&'static str, f64)>,
     ads: Vec<(&'static str, f64)>,
-    /// Each advertised group, with the channel that the routine uses for it first.
+    /// Each advertised group, with the first channel that the routine uses for the group.
     channels: Vec<(&'static str, &'static str)>,
 }
 

@@ -1,4 +1,4 @@
-//! Symbols in arguments of policies: names that are resolved at call time
+//! Symbols in arguments of policies: names that are resolved at the time of the call
 //! (docs/interfaces/policies.md#symbols).
 
 use serde_json::{Map, Value};

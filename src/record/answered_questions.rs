@@ -1,4 +1,4 @@
-//! Questions of a study that a participant has answered, and the number of breaks, both read from the record of a run.
+//! The study questions that a participant has answered and the number of breaks, both read from the record of a run.
 
 use std::collections::BTreeSet;
 

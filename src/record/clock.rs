@@ -19,7 +19,7 @@ static SCRIPTED_TIME_NS: AtomicI64 = AtomicI64::new(0);
 pub struct ScriptedClock(());
 
 impl ScriptedClock {
-    /// Starts the scripted clock at a time, in nanoseconds since the Unix epoch.
+    /// Starts the scripted clock at `moment`, in nanoseconds since the Unix epoch.
     pub fn start(moment: i64) -> ScriptedClock {
         SCRIPTED_TIME_NS.store(moment, Ordering::SeqCst);
         ScriptedClock(())

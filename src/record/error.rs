@@ -25,7 +25,7 @@ pub enum RunError {
     Damaged {
         /// Path of the file.
         path: PathBuf,
-        /// Line number, from 1.
+        /// Number of the damaged line, from 1.
         line: usize,
         /// Description of the defect.
         problem: String,
@@ -78,7 +78,7 @@ pub enum RunError {
         id: String,
         /// Format number in the manifest.
         format: u32,
-        /// Format number of this program.
+        /// Newest format that this program can read.
         known: u32,
     },
     /// Another program is writing the run.

@@ -19,7 +19,7 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// All modes of a run.
+    /// All modes, in declaration order.
     pub const ALL: [Mode; 4] = [Mode::Baseline, Mode::Sandbox, Mode::Lesson, Mode::Debug];
 
     /// The modes that a user can choose for a new run. A lesson run always has the lesson mode.
@@ -30,7 +30,7 @@ impl Mode {
         if matches!(self, Mode::Baseline | Mode::Lesson) { Mode::Sandbox } else { self }
     }
 
-    /// Returns the name of the mode in options and manifests.
+    /// Returns the name that options and manifests use for the mode.
     pub fn id(self) -> &'static str {
         match self {
             Mode::Baseline => "baseline",

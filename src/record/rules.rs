@@ -28,7 +28,7 @@ pub struct SessionRules {
     /// A setting of earlier builds that is read and never written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub code_words: Option<bool>,
-    /// Time limits of the session.
+    /// Limits of active time, and the action when a limit is reached.
     #[serde(default)]
     pub limits: TimeLimits,
 }

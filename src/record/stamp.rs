@@ -7,11 +7,11 @@ use crate::mode::Mode;
 /// The study to which a run belongs, and the assignment of the participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StudyStamp {
-    /// Name of the study.
+    /// Name of the study, from its protocol.
     pub name: String,
     /// BLAKE3 digest of the study protocol, in hexadecimal digits.
     pub digest: String,
-    /// Condition to which the participant was assigned.
+    /// Condition to which the participant was assigned; `None` if the study has no conditions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub condition: Option<String>,
     /// Position of the participant in the assignment order, from 1.
@@ -59,7 +59,7 @@ pub struct EarlierRun {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonStamp {
-    /// Name of the lesson.
+    /// Name of the lesson files, without the extension.
     pub name: String,
     /// Digest of the plan and texts of the lesson.
     pub digest: String,

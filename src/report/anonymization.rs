@@ -1,9 +1,9 @@
 //! Anonymized tables of a study. Labels, runs and machines are renamed, times are relative to the start of each run,
 //! and texts written by people are removed or masked.
 //!
-//! New names are derived from a secret that the experimenter keeps, so names in tables collected later are
-//! consistent. For each run, the table of runs contains a hash of the last hash in the sealed original.
-//! Anyone who has an original can therefore prove to which run it belongs.
+//! New names are derived from a secret that the experimenter keeps, so that tables collected later have the same names.
+//! For each run, the table of runs contains a hash of the last hash in the sealed original. Anyone who has an original
+//! can therefore prove which run it belongs to.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ use super::tables::{ColumnHeading, table_headings};
 /// A table's name and rows; the first row is the header.
 pub type NamedTable = (String, Vec<Vec<String>>);
 
-/// Treatment of texts written by people.
+/// What happens to texts written by people.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextHandling {
     /// Removes texts written by people.
@@ -42,29 +42,29 @@ pub struct RunLink {
 pub const LINK_COLUMNS: [&str; 6] =
     ["participant", "new_participant", "run", "new_run", "last_hash", "original"];
 
-// Columns by which someone who knows a participant could identify this person.
+// Columns that could identify a participant to someone who knows this person.
 const IDENTIFYING_COLUMNS: [(&str, &str); 4] =
     [("runs", "assigned_order"), ("runs", "problem"), ("notes", "digest"), ("visits", "folder")];
 
-// Columns that describe the design of a session. Rare combinations of their values can identify a participant.
+// Columns that describe the design of a session. A rare combination of their values can identify a participant.
 const DESIGN_COLUMNS: [&str; 2] = ["seed", "condition"];
 
-/// Columns that join the tables and cannot be omitted.
+/// Columns that join the tables, so they cannot be omitted.
 const REQUIRED_COLUMNS: [&str; 2] = ["run", "participant"];
 
-/// Anonymized tables, with the links to the original runs.
+/// Anonymized tables, and the links to the original runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnonymizedTables {
-    /// The anonymized tables.
+    /// All tables of the input, with new names and without identifying columns.
     pub tables: Vec<NamedTable>,
-    /// Links from the new names to the original runs.
+    /// Old and new name of every run, for the experimenter only.
     pub links: Vec<RunLink>,
-    /// Size of the smallest group of sessions that have the same seed and condition, and these values.
-    /// Omitted columns are ignored. `None` if both columns are omitted or no session exists.
+    /// The smallest group of sessions with the same seed and condition: its size, and these values. Ignores omitted
+    /// columns. `None` if both columns are omitted or there is no session.
     pub smallest_group: Option<(usize, String)>,
 }
 
-/// Replaces identifying values with names derived from a secret.
+/// Replaces identifying values with names that are derived from a secret.
 pub struct Anonymizer {
     secret: [u8; 32],
     texts: TextHandling,
@@ -77,7 +77,7 @@ pub struct Anonymizer {
 }
 
 impl Anonymizer {
-    /// Returns an anonymizer that omits the columns `without` from every table, in addition to the identifying columns.
+    /// Returns an anonymizer that omits the columns `without` from every table, in addition to `IDENTIFYING_COLUMNS`.
     pub fn new(secret: [u8; 32], texts: TextHandling, without: Vec<String>) -> Anonymizer {
         Anonymizer {
             secret,
@@ -91,7 +91,7 @@ impl Anonymizer {
     /// Returns the anonymized tables of an export or a collection, and the links to the originals.
     ///
     /// # Errors
-    /// Returns an error if a table or column is missing, or if the same new name would replace two names.
+    /// Returns an error if a table or column is missing, or if two names would get the same new name.
     pub fn anonymize(&mut self, tables: &[NamedTable]) -> Result<AnonymizedTables, String> {
         let all = |name: &str| {
             let found = tables.iter().find(|(text, _)| text == name).map(|(_, rows)| rows.as_slice());
@@ -144,10 +144,10 @@ impl Anonymizer {
             || self.omitted_columns.iter().any(|text| text == column)
     }
 
-    /// Checks that the columns to omit exist and do not join the tables.
+    /// Checks that the columns to omit exist and are not needed to join tables.
     ///
     /// # Errors
-    /// Returns an error that names the first column that does not exist or that joins the tables.
+    /// Returns an error that names the first column that does not exist or joins tables.
     pub fn check_omitted_columns(&self) -> Result<(), String> {
         let known = |name: &str| {
             table_headings().iter().any(|(_, column_headings)| {
@@ -216,8 +216,8 @@ impl Anonymizer {
             let of = |name: &str| known.get(name).copied().unwrap_or_default();
             made.push(((self.new_label(of("participant")), self.new_run_name(of("run"))), cells.collect()));
         }
-        // The rows are sorted by label and run, because the original order reveals when participants played.
-        // The order within a run is kept.
+        // Rows are sorted by new label and run, because the original order shows when participants played. Within a
+        // run, the order is kept.
         made.sort_by(|one: &((String, String), Vec<String>), other| one.0.cmp(&other.0));
         let head = columns.iter().map(|heading| anonymized_column_name(heading).to_owned()).collect();
         Ok(std::iter::once(head).chain(made.into_iter().map(|(_, row)| row)).collect())
@@ -269,7 +269,7 @@ impl Anonymizer {
             Some((name @ ("machine" | "boot"), value)) => {
                 format!("{name}={}", self.keyed_name(name, value, 16))
             }
-            // The value would reveal when the computer was started.
+            // The value would show when the computer was started.
             Some(("monotonic_ms", _)) => "monotonic_ms=".to_owned(),
             _ => part.to_owned(),
         };
@@ -290,7 +290,7 @@ impl Anonymizer {
     }
 }
 
-/// Returns whether an event is an accepted setting or purchase, whose arguments contain no free text.
+/// Returns whether an event is an accepted setting or purchase. The arguments of such an event contain no free text.
 fn is_setting(row: &BTreeMap<&str, &str>) -> bool {
     let of = |name: &str| row.get(name).copied().unwrap_or_default();
     let begins = ["set_", "start_research", "research_"].iter().any(|begin| of("what").starts_with(begin));

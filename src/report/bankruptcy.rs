@@ -39,8 +39,8 @@ pub fn cost_shares(totals: &BTreeMap<&str, f64>) -> Vec<CostShare> {
     all.into_iter().map(|(name, dollars)| CostShare { name, dollars, share: dollars / sum }).collect()
 }
 
-/// Describes turning points: the peak number of subscribers, the last profitable week, and the weeks before
-/// the bankruptcy.
+/// Describes turning points: the peak number of subscribers, the last profitable week, and the weeks before the
+/// bankruptcy.
 pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
     let Some(last) = weeks.last() else { return Vec::new() };
     let mut texts = Vec::new();

@@ -1,4 +1,5 @@
-//! Collects a study: verifies the runs of all machines, stores each run once in a folder, and returns the tables of the runs.
+//! Collects a study: verifies the runs of all machines, stores each run once in a folder, and returns the tables of all
+//! runs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -15,13 +16,13 @@ use novamind_study::{
 /// Inputs and options of a collection.
 #[derive(Clone, Copy)]
 pub struct CollectOptions<'a> {
-    /// Folders of runs copied from the machines, and archives.
+    /// Archives, and folders of runs copied from the machines.
     pub sources: &'a [PathBuf],
-    /// Folder to which the archives are written.
+    /// Folder to which the archives of the collected runs are written.
     pub output_folder: &'a Path,
-    /// The study that is collected; `None` to collect runs without a study definition.
+    /// Study to collect; `None` to collect runs without a study definition.
     pub study: Option<&'a Study>,
-    /// Labels that replace the recorded labels, by run ID.
+    /// Labels that replace the labels in the records, by run ID.
     pub labels: &'a BTreeMap<String, String>,
     /// Keys of the lab that collects the study.
     pub keys: LabKeys<'a>,
@@ -49,17 +50,17 @@ impl LabKeys<'_> {
 pub struct CollectionResult {
     /// Tables of all collected runs.
     pub tables: StudyTables,
-    /// Collected runs: label, seal, path of the archive.
+    /// Label, seal and path of the archive of each collected run.
     pub runs: Vec<(Option<String>, Seal, PathBuf)>,
-    /// Warnings for the experimenter.
+    /// Problems for the experimenter to check, such as unreadable files.
     pub notes: Vec<CollectNote>,
-    /// Number of participants who visited the study, by outcome.
+    /// Number of participants who visited the study, for each outcome.
     pub visits: VisitSummary,
 }
 
-/// Collects a study: replays every run, verifies it and seals it in an archive. `progress` is called with the
-/// number of finished runs and the total number of runs. Archives of earlier collections are replaced. They
-/// contain nothing else, because trajectories only grow.
+/// Collects a study: replays every run, verifies it, and seals it in an archive. `progress` is called with the number
+/// of finished runs and the total number of runs. Replaces archives of earlier collections. No data is lost, because
+/// trajectories only grow.
 ///
 /// # Errors
 /// Returns an error if the output folder cannot be written.
@@ -69,10 +70,10 @@ pub fn collect(
 ) -> Result<CollectionResult, RunError> {
     let CollectOptions { sources, output_folder: out, study, labels, keys } = what;
     std::fs::create_dir_all(out).map_err(|error| RunError::Io { path: out.to_owned(), error })?;
-    // Archives are unpacked into a hidden folder that is deleted at the end.
-    let workshop = TemporaryFolder::create_in(out)?;
+    // Unpack archives into a hidden folder that is deleted at the end.
+    let temporary_folder = TemporaryFolder::create_in(out)?;
     let CollectedRuns { runs, conflicts, mut notes, visits } =
-        collect_runs(sources, workshop.path(), out, keys.verification_key);
+        collect_runs(sources, temporary_folder.path(), out, keys.verification_key);
     let mut collected = CollectionResult {
         tables: StudyTables::default(),
         runs: Vec::new(),

@@ -1,4 +1,4 @@
-//! Review of costs before a week runs: committed costs by day and week, one-time costs, expected income and runway.
+//! Review before a week is simulated: committed costs by day and week, one-time costs, expected income and runway.
 
 use super::formatting::{describe_runway, format_money, pluralize};
 use novamind_base::formatting::{capitalize, dollars, price_to_cents, signed_dollars};
@@ -37,7 +37,7 @@ pub fn income_and_cost_lines(seen: &Observation) -> Vec<String> {
     lines
 }
 
-/// Returns a line for each pair of plans that are identical or differ only in price.
+/// Returns a line for each pair of plans that are identical or have different prices only.
 pub fn identical_plan_lines(seen: &Observation) -> Vec<String> {
     seen.alike_plans.iter().map(describe_identical_plans).collect()
 }
@@ -57,8 +57,8 @@ fn describe_identical_plans(plans: &IdenticalPlans) -> String {
     format!("{cheap} and {expensive} {since} differ only in price ({low} and {high}); {payers}")
 }
 
-/// Describes the cost of a tool call and the day on which the call takes effect. Returns `None` if the call has no
-/// cost and no delay.
+/// Describes the cost of a tool call and the day on which it takes effect. Returns `None` if the call has neither cost
+/// nor delay.
 pub fn cost_line(preview: &Preview) -> Option<String> {
     let parts = [
         (preview.cost_now > 0.0).then(|| format!("costs {} at once", dollars(preview.cost_now))),

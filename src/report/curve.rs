@@ -1,4 +1,5 @@
-//! Text of the participation curve explorer: the source of the curve, its values at several prices, and the expected outcome.
+//! Texts of the participation curve explorer: the source of the curve, its values at several prices, and the expected
+//! outcome.
 
 use novamind_base::formatting::{dollars_and_cents, percent, price_to_cents};
 use novamind_insight::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, ExpectedRange, PlanPoint};
@@ -28,7 +29,8 @@ pub fn column_names(curve_explorer: &CurveExplorer) -> Vec<String> {
     names[..shown].iter().map(|name| (*name).to_owned()).collect()
 }
 
-/// Returns a table row for each displayed price: the price, and the qualities that 10%, 50% and 90% of the leads accept.
+/// Returns a table row for each displayed price: the price, and the qualities at which 10 %, 50 % and 90 % of the leads
+/// accept it.
 pub fn rows(curve_explorer: &CurveExplorer) -> Vec<Vec<String>> {
     let row = |point: &CurvePoint| {
         let (least, most) = point.median_range;
@@ -42,7 +44,7 @@ pub fn rows(curve_explorer: &CurveExplorer) -> Vec<Vec<String>> {
     curve_explorer.points.iter().step_by(POINTS_PER_ROW).map(row).collect()
 }
 
-/// Returns footnotes that explain the dash in [`rows`] and what the estimates leave out.
+/// Returns footnotes that explain the dash in [`rows`] and name what the estimates leave out.
 pub fn footnotes(curve_explorer: &CurveExplorer) -> Vec<String> {
     let mut lines = Vec::new();
     if rows(curve_explorer).iter().flatten().any(|cell| cell == UNREACHABLE) {
@@ -67,7 +69,8 @@ pub fn describe_outcome(outcome: &CurveOutcome) -> String {
     }
 }
 
-/// Describes the estimated and the measured conversion briefly: `estimated 31% (4% to 70%), measured 26% of 1,230 leads`.
+/// Describes the estimated and the measured conversion briefly: `estimated 31% (4% to 70%), measured 26% of 1,230
+/// leads`.
 pub fn describe_conversion_briefly(outcome: &CurveOutcome, measured: Option<&MeasuredConversion>) -> String {
     let conversion = format_range(&outcome.conversion, |value| percent(value, 0));
     let asked = if outcome.revenue_per_lead.is_none() { " ask for an offer" } else { "" };
@@ -75,7 +78,8 @@ pub fn describe_conversion_briefly(outcome: &CurveOutcome, measured: Option<&Mea
     format!("estimated {conversion}{asked}{measured}")
 }
 
-/// Describes briefly what the estimated conversion leaves out: `leaves out market changes since day 0; spread assumed`.
+/// Describes in a few words what the estimated conversion leaves out: `leaves out market changes since day 0; spread
+/// assumed`.
 pub fn describe_omissions_briefly(explorer: &CurveExplorer) -> String {
     let assumed = if explorer.shows_true_values() { "" } else { "; spread assumed" };
     format!("leaves out {}{assumed}", market_changes(explorer))
@@ -88,7 +92,7 @@ fn market_changes(explorer: &CurveExplorer) -> String {
     }
 }
 
-/// Describes what the estimated conversion leaves out, in one sentence.
+/// Describes what the estimated conversion leaves out, as one sentence.
 pub fn describe_omissions(explorer: &CurveExplorer) -> String {
     let mut omitted = vec![market_changes(explorer)];
     if !explorer.group.is_enterprise() {
@@ -108,7 +112,7 @@ pub fn describe_omissions(explorer: &CurveExplorer) -> String {
     format!("The estimate leaves out {text}{assumed}.")
 }
 
-/// Formats an expected value with its range, if any. `write` formats each number.
+/// Formats an expected value and its range, if it has one. `write` formats each number.
 pub fn format_range(figure: &ExpectedRange, write: impl Fn(f64) -> String) -> String {
     let likely = write(figure.likely);
     match figure.least < figure.most {

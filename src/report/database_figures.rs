@@ -1,6 +1,5 @@
-//! Data for reports. Amounts by category and week are read from the ledger. Groups by week and leads by
-//! channel are read by guarded queries of the visible tables. If a query fails, its data is omitted and the
-//! query is listed.
+//! Data for reports. Amounts by category and week come from the ledger. Groups by week and leads by channel come from
+//! guarded queries of the visible tables. If a query fails, its data is omitted and the query is listed in `missing`.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +10,7 @@ use novamind_record::figures::CategoryTotals;
 use novamind_session::Session;
 use novamind_session::identifiers::Group;
 
-// The end of a deal that was cancelled early can be recorded after the last day. The cancellation is counted on the last day.
+// A deal that was cancelled early can end after the last day in the table. Its cancellation is counted on the last day.
 const GROUP_FLOW_SQL: &str = "SELECT (s.start_day + 6) / 7 AS week, c.group_id, count(*), sum(s.seat_count)
 FROM subscriptions s CROSS JOIN customers c
 WHERE c.customer_id = s.customer_id AND s.status IN ('subscribed', 'cancelled') GROUP BY 1, 2
@@ -20,7 +19,7 @@ SELECT (min(s.end_day, (SELECT max(day) FROM service_day)) + 6) / 7, c.group_id,
 FROM subscriptions s CROSS JOIN customers c
 WHERE c.customer_id = s.customer_id AND s.status = 'cancelled' GROUP BY 1, 2";
 
-// Excludes customer 1, the market observer, which is the author of news.
+// Customer 1 is excluded: it is the market observer, the author of news.
 const GROUP_LEADS_SQL: &str = "SELECT group_id, count(*) FROM customers WHERE customer_id > 1 GROUP BY 1";
 
 const GROUP_REVENUE_SQL: &str = "SELECT c.group_id, sum(s.effective_price * s.seat_count)
@@ -36,20 +35,20 @@ const OUTAGE_SQL: &str =
 /// Advertising results of one channel for one group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChannelRow {
-    /// ID of the group.
+    /// ID of the advertised group.
     pub group: String,
     /// Name of the channel.
     pub channel: String,
-    /// Leads of the group that arrived through this channel.
+    /// Number of the group's leads that arrived through this channel.
     pub leads: f64,
-    /// Advertising spending on the group in this channel, dollars.
+    /// Advertising spending for the group in this channel, dollars.
     pub spend: f64,
 }
 
 /// Leads, subscriptions and revenue of a group over the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroupHistory {
-    /// Customer group whose history is described.
+    /// Group that the other fields describe.
     pub group: Group,
     /// Number of leads over the whole run.
     pub leads: f64,
@@ -57,7 +56,7 @@ pub struct GroupHistory {
     pub active: Vec<f64>,
     /// Number of seats at the end of each week, week 0 first.
     pub seats: Vec<f64>,
-    /// Monthly revenue at the end of the run, dollars.
+    /// Monthly revenue from the group at the end of the run, dollars.
     pub revenue: f64,
 }
 
@@ -72,12 +71,12 @@ pub struct DatabaseFigures {
     pub ledger: BTreeMap<u32, BTreeMap<&'static str, f64>>,
     /// Day and duration in minutes of each outage.
     pub outages: Vec<(u32, u32)>,
-    /// Queries that failed, with their errors.
+    /// Queries that failed, and their errors.
     pub missing: Vec<String>,
 }
 
 impl DatabaseFigures {
-    /// Reads the database of a run without recording queries.
+    /// Reads the database of a run. The queries are not recorded.
     pub fn load(session: &Session) -> DatabaseFigures {
         let connection = session.wait_for_database().and_then(|()| session.database().open_connection());
         let connection = match connection {
@@ -109,7 +108,7 @@ impl DatabaseFigures {
         DatabaseFigures { groups, channels, ledger: ledger_by_week(session), outages, missing }
     }
 
-    /// Reads only the advertising results. Returns an empty list if the query fails.
+    /// Reads only the advertising results, and returns an empty list if the query fails.
     pub fn load_channels(session: &Session) -> Vec<ChannelRow> {
         let connection = session.wait_for_database().and_then(|()| session.database().open_connection()).ok();
         let rows = connection
@@ -164,7 +163,7 @@ fn channel_row(row: &[Cell]) -> ChannelRow {
     }
 }
 
-/// Returns the ledger amounts of each week, including the days since the last complete week.
+/// Returns the ledger amounts by week. The days after the last complete week form another week.
 fn ledger_by_week(session: &Session) -> BTreeMap<u32, BTreeMap<&'static str, f64>> {
     let since = session.company().observe().booked_since;
     let weeks = session.weeks().iter().map(|week| week.booked).chain([since]);

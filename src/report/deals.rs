@@ -1,4 +1,4 @@
-//! Text for tool calls that make or reject offers to enterprises.
+//! Texts for tool calls that make or reject offers to enterprises.
 
 use serde_json::Value;
 
@@ -36,7 +36,7 @@ fn describe_deal(deal: &Value, names: &EnterpriseNames) -> Option<String> {
 }
 
 /// Parses one deal of a tool call: the customer, and each plan with its price in dollars per seat per month. A
-/// rejection has no plans. Returns `None` if the deal is invalid.
+/// rejection of an enterprise has no plans. Returns `None` if the deal is invalid.
 pub fn parse_deal(deal: &Value) -> Option<(u32, Vec<(&str, f64)>)> {
     let part = |name: &str, at: usize| deal.get(name).or_else(|| deal.get(at));
     let customer = u32::try_from(part("customer_id", 0).unwrap_or(deal).as_u64()?).ok()?;

@@ -112,7 +112,7 @@ pub fn describe_comparison(debrief: &Debrief) -> Vec<String> {
         DecisionComparison::NotComparable => {
             vec!["Your decisions cannot be compared with the reference play in this run.".to_owned()]
         }
-        DecisionComparison::Different(parting) => {
+        DecisionComparison::Different(difference) => {
             let describe_play = |name: &str, play: &Option<ReferenceCurve>| {
                 let text = play.as_ref().and_then(|play| play.text.as_ref());
                 text.map(|text| format!("The {name} play: {text}"))
@@ -122,10 +122,15 @@ pub fn describe_comparison(debrief: &Debrief) -> Vec<String> {
                     .into_iter()
                     .flatten()
                     .collect();
-            lines.push(format!("Your decisions first differ in week {}, day {}:", parting.week, parting.day));
-            let names = debrief.company_names();
-            lines.extend(parting.decisions.iter().map(|one| format!("  {}", describe_decision(one, &names))));
-            lines.push(describe_effect(parting, debrief));
+            lines.push(format!(
+                "Your decisions first differ in week {}, day {}:",
+                difference.week, difference.day
+            ));
+            let names = debrief.enterprise_names();
+            lines.extend(
+                difference.decisions.iter().map(|one| format!("  {}", describe_decision(one, &names))),
+            );
+            lines.push(describe_effect(difference, debrief));
             lines
         }
     }
@@ -189,8 +194,8 @@ fn describe_calls(tool: ToolId, calls: &[Value], names: &EnterpriseNames) -> Str
     }
 }
 
-fn describe_effect(parting: &FirstDifference, debrief: &Debrief) -> String {
-    let effect = match parting.effect {
+fn describe_effect(difference: &FirstDifference, debrief: &Debrief) -> String {
+    let effect = match difference.effect {
         DecisionEffect::Simulated(effect) => effect,
         DecisionEffect::Rejected => {
             return "The reference play's calls are rejected in your run, so their effect was not simulated."
@@ -210,7 +215,7 @@ fn describe_effect(parting: &FirstDifference, debrief: &Debrief) -> String {
     let text = format!(
         "Re-run with these decisions of the reference play in week {} and your other decisions: {}\
          cash of {} on day {} rather than {} ({}).",
-        parting.week,
+        difference.week,
         figure.unwrap_or_default(),
         format_money(effect.with),
         effect.day,
@@ -220,7 +225,7 @@ fn describe_effect(parting: &FirstDifference, debrief: &Debrief) -> String {
     text + &describe_single_or_joint_effect(effect, debrief)
 }
 
-/// Explains why the first different decisions of the reference play can worsen the result if they are used alone.
+/// Explains why the first decisions of the reference play that differ can worsen the result if only they are copied.
 fn describe_single_or_joint_effect(effect: ReferenceEffect, debrief: &Debrief) -> String {
     let (mine, with) = effect.judged.unwrap_or((effect.own, effect.with));
     if with >= mine {
@@ -283,7 +288,7 @@ fn split_paragraphs(text: &str) -> Vec<String> {
     text.split("\n\n").map(plain).filter(|paragraph| !paragraph.is_empty()).collect()
 }
 
-/// Returns the glossary terms that a Markdown text emphasizes, without duplicates.
+/// Returns the glossary terms that a Markdown text emphasizes, each once.
 pub fn emphasized_terms(text: &str) -> Vec<&'static Term> {
     let mut found: Vec<&'static Term> = Vec::new();
     let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -1,5 +1,5 @@
-//! Decisions by week: settings with old and new values, purchases, posts and offers, and the first line of
-//! the rationale.
+//! Decisions by week: settings with old and new values, purchases, posts and offers, and the first line of the
+//! rationale.
 
 use serde_json::Value;
 
@@ -8,23 +8,23 @@ use novamind_record::figures::WeekFigures;
 use novamind_session::{Decisions, JournalEntry, SettingChange, week_of_day};
 use novamind_tools::ToolId;
 
-/// Consecutive weeks with the same decisions: the player decided before the first week and changed nothing before the
-/// following weeks.
+/// Consecutive weeks with the same decisions: the player decided before the first of these weeks and changed nothing
+/// before the others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DecisionPeriod {
-    /// Number of the first week.
+    /// First week of the period, counted from 1.
     pub week: u32,
-    /// Number of the last week.
+    /// Last week of the period, counted from 1.
     pub last_week: u32,
-    /// Day on which the player decided.
+    /// Day on which the player decided, before the first week.
     pub day: u32,
     /// Last simulated day of the period.
     pub end_day: u32,
     /// First line of the player's rationale.
     pub rationale: String,
-    /// Descriptions of changed settings, with old and new values.
+    /// Descriptions of the changed settings, with old and new values.
     pub changes: Vec<String>,
-    /// Descriptions of purchases, posts and offers.
+    /// Descriptions of the purchases, posts and offers.
     pub actions: Vec<String>,
     /// Cash at the end of the period, dollars.
     pub cash: f64,
@@ -38,7 +38,7 @@ pub fn describe_change(change: &SettingChange) -> String {
     change.setting.unit().map_or(text.clone(), |unit| format!("{text} {unit}"))
 }
 
-/// Sorts changed settings by the amount of the change in dollars, the largest first. Settings without a unit in dollars
+/// Sorts changed settings by the size of the change in dollars, largest first. Settings whose unit is not dollars
 /// follow in their original order.
 pub fn by_amount(changes: &[SettingChange]) -> Vec<&SettingChange> {
     let amount = |change: &SettingChange| match change.setting.unit() {
@@ -50,7 +50,7 @@ pub fn by_amount(changes: &[SettingChange]) -> Vec<&SettingChange> {
     sorted
 }
 
-/// Describes changed settings, with one line for each family of settings: `price: A 0 → 14, B 0 → 49 $/month`.
+/// Describes changed settings, one line per family of settings: `price: A 0 → 14, B 0 → 49 $/month`.
 pub fn describe_changes(changes: &[SettingChange]) -> Vec<String> {
     let mut families: Vec<(String, Vec<&SettingChange>)> = Vec::new();
     for change in changes {
@@ -138,7 +138,7 @@ fn rationale_first_line(entry: &JournalEntry) -> Option<String> {
     }
 }
 
-/// Lists purchases, offers and posts with their texts. Repeated actions are listed once, with a count.
+/// Lists purchases and offers, and posts with their texts. An action that was repeated is listed once, with a count.
 fn describe_actions(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String> {
     let posts = entries.iter().filter_map(|entry| match entry {
         JournalEntry::Call { tool, args, .. } if *tool == ToolId::PostSocialMedia => {
@@ -147,7 +147,7 @@ fn describe_actions(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String
         _ => None,
     });
     let mut counted_actions: Vec<(String, u32)> = Vec::new();
-    // The entry that contains the text of a post replaces the entry that only mentions the post.
+    // The journal entry with the text of a post replaces the purchase that only mentions the post.
     for deed in decided.purchases.iter().filter(|deed| !deed.starts_with("post ")).cloned().chain(posts) {
         match counted_actions.iter_mut().find(|(known, _)| *known == deed) {
             Some((_, times)) => *times += 1,

@@ -1,4 +1,4 @@
-//! Tool calls in words: the name of the decision, and its values with the previous values.
+//! Tool calls in words: the name of the decision, and its values with the values before.
 
 use serde_json::{Map, Value};
 
@@ -8,7 +8,7 @@ use novamind_insight::Cause;
 use novamind_session::EnterpriseNames;
 use novamind_tools::{Argument, ArgumentKind, ToolId, ToolKind, ToolSpec};
 
-/// Returns the name of the decision that is made by a call to a tool, for example `price`.
+/// Returns the name of the decision that a call to this tool makes, such as `price`.
 pub fn decision_name(tool: ToolId) -> &'static str {
     Cause::Calls(tool).name()
 }
@@ -23,8 +23,8 @@ pub fn describe_values(tool: ToolId, args: &Value, names: &EnterpriseNames) -> S
     values_by_name(tool.spec(), args).into_iter().map(value).collect::<Vec<_>>().join(", ")
 }
 
-/// Describes the values that a call changes: `B 25 → 30`. `before` contains the arguments that would set the
-/// previous values. Calls to tools that change no setting are described by their values.
+/// Describes the values that a call changes: `B 25 → 30`. `before` contains the arguments that would set the previous
+/// values. If the tool changes no setting, describes the values of the call.
 pub fn describe_value_changes(
     tool: ToolId,
     before: &Map<String, Value>,
@@ -40,7 +40,7 @@ pub fn describe_value_changes(
     let find = |values: &[(String, &Value)], name: &str| {
         values.iter().find(|(other, _)| other == name).map_or(0.0, |(_, value)| value.as_f64().unwrap_or(0.0))
     };
-    // A map in a call replaces the complete map, so values that are missing from it become 0.
+    // The map in a call replaces the whole previous map, so values that are missing from the call become 0.
     let given = given_arguments(spec, args);
     let is_replaced = |name: &str| {
         given.iter().any(|argument| {
@@ -61,14 +61,14 @@ pub fn describe_value_changes(
     if changes.is_empty() { "no change".to_owned() } else { changes.join(", ") }
 }
 
-/// Returns the names of the arguments that a call specifies, as [`values_by_name`] formats them.
+/// Returns the names of the values that a call specifies, in the form of [`values_by_name`].
 fn given_arguments(spec: &ToolSpec, args: &Value) -> Vec<String> {
     let given = args.as_object().into_iter().flatten();
     given.map(|(name, _)| argument_label(spec, name)).collect()
 }
 
-/// Returns the label of an argument. The only map of a tool and the text of a post have no label, because
-/// their values are clear without one.
+/// Returns the label of an argument. The label is empty for the only map of a tool and for the text of a post, because
+/// their values are clear without it.
 fn argument_label(spec: &ToolSpec, name: &str) -> String {
     let is_main_text = |argument: &Argument| {
         argument.name == name && argument.required && argument.kind == ArgumentKind::Text
@@ -77,7 +77,7 @@ fn argument_label(spec: &ToolSpec, name: &str) -> String {
     if is_clear { String::new() } else { name.replace('_', " ") }
 }
 
-/// Returns the values of a call with their names: `linkedin E1`.
+/// Returns the values of a call, each with the path of its name, such as `linkedin E1`.
 fn values_by_name<'a>(spec: &ToolSpec, args: &'a Value) -> Vec<(String, &'a Value)> {
     let mut values = Vec::new();
     for (name, value) in args.as_object().into_iter().flatten() {

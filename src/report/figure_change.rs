@@ -1,4 +1,4 @@
-//! Rates how unusual a figure's change is, compared with its changes in earlier weeks.
+//! Rates how unusual the change of a figure is, compared with its changes in earlier weeks.
 
 /// A change of a figure over the last week.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,11 +9,12 @@ pub struct FigureChange {
     pub new: f64,
     /// Rating of the change: 0 for a usual change, above 3 for a rare one.
     pub unusualness: f64,
-    /// Size of the figure's random variation.
+    /// Size of the figure's random variation, in the unit of the figure.
     pub noise: f64,
-    /// Number of weeks since a change in this direction was at least as large; `None` if no earlier change was as large.
+    /// Number of weeks since a change in this direction was at least as large; `None` if no earlier change was as
+    /// large.
     pub weeks_since_larger: Option<usize>,
-    /// Number of earlier weekly changes.
+    /// Number of weekly changes before this one.
     pub earlier_changes: usize,
 }
 
@@ -44,11 +45,10 @@ impl FigureChange {
     }
 }
 
-/// Rates the last change of a series, which starts with the oldest value. Returns `None` if there are fewer
-/// than two values or if the last value did not change. If the series has enough weeks, the change is
-/// compared with the median change and with the median distance from this median. Otherwise, the relative
-/// size of the change is used. A change of about `noise`, the random variation of the figure, is never
-/// unusual.
+/// Rates the last change of a series, which starts with the oldest value. Returns `None` if there are fewer than two
+/// values or if the last value did not change. If the series is long enough, the distance of the change from the median
+/// change is compared with the median of these distances. Otherwise, the rating is based on the relative size of the
+/// change. A change of about `noise`, the random variation of the figure, is never unusual.
 pub fn last_change(series: &[f64], noise: f64) -> Option<FigureChange> {
     let [.., old, new] = *series else { return None };
     if old == new || !old.is_finite() || !new.is_finite() {
@@ -60,7 +60,7 @@ pub fn last_change(series: &[f64], noise: f64) -> Option<FigureChange> {
     let since = before.iter().rev().position(as_large).map(|at| at + 1);
     let size = change.abs() / old.abs().max(new.abs());
     let unusual = if before.len() < MIN_EARLIER_CHANGES {
-        // With this factor, a change by one half is rated unusual, and a change by one tenth is not.
+        // With this factor, a change by one half is unusual, and a change by one tenth is not.
         size * 6.0
     } else {
         let usual = median(&before);
@@ -137,7 +137,7 @@ mod tests {
         let one = last_change(&series, 1.0).expect("it moved");
         assert!(one.unusualness <= 1.0, "{one:?}");
         assert_eq!(one.describe_rarity(), "");
-        // A change is not unusual if the figure's growth only slows down.
+        // Slower growth is not an unusual change.
         let stalled =
             last_change(&[0.0, 600.0, 1200.0, 1800.0, 2400.0, 3000.0, 3072.0], 180.0).expect("it moved");
         assert!(stalled.unusualness < 1.0, "{stalled:?}");

@@ -1,6 +1,6 @@
-//! Fit: the plans compared with the estimated requirements of a group. An estimate is a range around the
-//! value from a market study, so a plan's figure is below, in or above the range. A deficit is reported only
-//! if it exists for every value in the range.
+//! Fit: the plans compared with the estimated requirements of a group. An estimate is a range around the value from a
+//! market study, so the figure of a plan is below, in or above this range. A deficit is reported only if it exists for
+//! every value in the range.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use novamind_base::formatting::{QUALITY_DECIMALS, dollars, dollars_and_cents, pe
 use novamind_session::identifiers::{ByGroup, ByPlan, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, true_value_range};
 
-/// Smallest and largest true value that are consistent with an estimate.
+/// The true values that are consistent with an estimate, from smallest to largest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TrueValueRange {
     /// Smallest possible true value.
@@ -24,14 +24,14 @@ pub struct TrueValueRange {
 pub enum RangePosition {
     /// The figure is below the range.
     Below,
-    /// The figure is in the range, so the true value can be smaller or larger than the figure.
+    /// The figure is in the range, so the true value can be above or below it.
     InRange,
     /// The figure is above the range.
     Above,
 }
 
 impl TrueValueRange {
-    /// Returns the possible true values for an estimate with a relative error of at most `share`.
+    /// Returns the true values that are possible if the relative error of the estimate is at most `share`.
     pub fn from_estimate(estimate: f64, share: f64) -> TrueValueRange {
         true_value_range(estimate, share).into()
     }
@@ -55,7 +55,7 @@ impl TrueValueRange {
         format!("${}", format_range(self.least, self.most, 0).replace(" to ", " to $"))
     }
 
-    /// Formats the range as whole numbers, for labels that already have the unit: `180 to 841`.
+    /// Formats the range as whole numbers without a unit, for labels that already contain the unit: `180 to 841`.
     pub fn format_units(&self) -> String {
         format_range(self.least, self.most, 0)
     }
@@ -95,12 +95,12 @@ impl FitCriterion {
 /// Prices, quality and quota of a plan for one group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanFit {
-    /// Plan that is compared with the requirements of the group.
+    /// Plan that the other fields describe.
     pub plan: Plan,
     /// List price, dollars per month; 0 if the plan is not on sale.
     pub list_price: f64,
-    /// List price less the discount for leads from all channels. Leads compare this price with their budget.
-    /// Enterprises negotiate their price.
+    /// List price less the discount for leads from all channels. Leads compare this price with their budget. For
+    /// enterprises, it equals the list price, because they negotiate.
     pub lead_price: f64,
     /// List price less the current discount. Subscribers are billed this price.
     pub billed_price: f64,
@@ -115,13 +115,13 @@ pub struct PlanFit {
 pub struct LeadFlow {
     /// Total number of leads.
     pub leads: u32,
-    /// Number of leads that arrived through channels.
+    /// Number of leads whom channels brought.
     pub channel_leads: u32,
-    /// Number of leads by word of mouth.
+    /// Number of leads whom word of mouth brought.
     pub word_of_mouth: u32,
-    /// Number of leads that are enterprises and requested an offer.
+    /// Number of enterprises that requested an offer.
     pub requests: u32,
-    /// Number of individuals who signed up, or number of enterprises that accepted their first deal.
+    /// Number of individuals who signed up, or of enterprises that accepted their first deal.
     pub signups: u32,
 }
 
@@ -130,21 +130,21 @@ pub struct LeadFlow {
 pub struct Fit {
     /// Customer group whose requirements are compared with the plans.
     pub group: Group,
-    /// Study level of the group.
+    /// Study level of the group, which determines the precision of the estimates.
     pub level: u8,
     /// Largest relative error of the estimates at this study level.
     pub max_relative_error: f64,
-    /// Day of the estimates of required quality and budget.
+    /// Day for which required quality and budget are estimated.
     pub study_day: u32,
     /// Number of days since `study_day`.
     pub age_days: u32,
     /// Mean required quality of the group at low prices. Required quality rises with the price.
     pub floor: TrueValueRange,
-    /// Mean budget: dollars per month for individuals, dollars per seat per month for enterprises.
+    /// Mean budget, dollars per month; for enterprises, per seat.
     pub budget: TrueValueRange,
-    /// Mean usage of an individual, or usage of the smallest enterprise, units per day.
+    /// Mean usage of an individual, or usage of the smallest enterprise; units per day.
     pub usage: TrueValueRange,
-    /// The plans that are compared with the group's requirements.
+    /// Prices, quality and quota of every plan.
     pub plans: ByPlan<PlanFit>,
     /// Leads of the last week; `None` before the first week.
     pub last_week: Option<LeadFlow>,
@@ -194,7 +194,7 @@ fn plan_fit(group: Group, plan: Plan, quality: f64, settings: &Settings) -> Plan
         plan,
         list_price: list,
         lead_price: less(leads),
-        // No customer has the number 0, so discounts for single customers are excluded.
+        // No customer has the number 0, so this sum excludes discounts for single customers.
         billed_price: less(settings.promotion.sum(0, group, plan)),
         quality,
         quota: settings.core.quotas[plan].units(),
@@ -252,11 +252,11 @@ impl LeadFlow {
 }
 
 impl Fit {
-    /// Compares a plan with the group's requirements by one criterion. Returns `None` for the price if the group is an
-    /// enterprise group, because enterprises negotiate prices.
-    pub fn position(&self, plan: Plan, concern: FitCriterion) -> Option<RangePosition> {
+    /// Compares a plan with the group's requirements by one criterion. Returns `None` for the price of an enterprise
+    /// group, because enterprises negotiate prices.
+    pub fn position(&self, plan: Plan, criterion: FitCriterion) -> Option<RangePosition> {
         let plan_fit = &self.plans[plan];
-        match concern {
+        match criterion {
             FitCriterion::Price if self.group.is_enterprise() => None,
             FitCriterion::Price => Some(self.budget.position_of(plan_fit.lead_price)),
             FitCriterion::Quality => Some(self.floor.position_of(plan_fit.quality)),
@@ -264,10 +264,10 @@ impl Fit {
         }
     }
 
-    /// Returns the smallest deficit over all possible true values, or `None` if no deficit is certain.
-    pub fn certain_gap(&self, plan: Plan, concern: FitCriterion) -> Option<f64> {
+    /// Returns the smallest deficit that is consistent with the estimate, or `None` if there may be no deficit.
+    pub fn certain_gap(&self, plan: Plan, criterion: FitCriterion) -> Option<f64> {
         let plan_fit = &self.plans[plan];
-        match (concern, self.position(plan, concern)?) {
+        match (criterion, self.position(plan, criterion)?) {
             (FitCriterion::Price, RangePosition::Above) => Some(plan_fit.lead_price - self.budget.most),
             (FitCriterion::Quality, RangePosition::Below) => Some(self.floor.least - plan_fit.quality),
             (FitCriterion::Quota, RangePosition::Below) => Some(self.usage.least - plan_fit.quota),
@@ -275,9 +275,9 @@ impl Fit {
         }
     }
 
-    /// Returns the cheapest plan on sale that can suit an enterprise of the group: no deficit in quality is certain, and
-    /// its quota covers the estimated usage of all seats, in units per day. Without an estimate, its quota covers the
-    /// smallest enterprise.
+    /// Returns the cheapest plan on sale that can suit an enterprise of the group: no deficit in quality is certain,
+    /// and the quota covers `usage`, the estimated usage of all seats in units per day. If `usage` is `None`, the quota
+    /// must cover the usage of the smallest enterprise.
     pub fn cheapest_suitable_plan(&self, usage: Option<f64>) -> Option<Plan> {
         let suits = |plan: &Plan| {
             let covers_usage = match usage {
@@ -291,16 +291,18 @@ impl Fit {
         Plan::ALL.into_iter().filter(suits).min_by(|left, right| price(left).total_cmp(&price(right)))
     }
 
-    /// Describes the certain deficits of a plan, and the criteria for which the result is uncertain.
+    /// Describes the deficits of a plan that are certain, and the criteria for which a deficit is possible.
     pub fn describe_gaps(&self, plan: Plan) -> String {
         let plan_fit = &self.plans[plan];
         if plan_fit.list_price <= 0.0 {
             return "has no price".to_owned();
         }
-        let certain = |concern: &FitCriterion| Some((*concern, self.certain_gap(plan, *concern)?));
+        let certain = |criterion: &FitCriterion| Some((*criterion, self.certain_gap(plan, *criterion)?));
         let missing: Vec<(FitCriterion, f64)> = FitCriterion::ALL.iter().filter_map(certain).collect();
-        let inside = |concern: &&FitCriterion| self.position(plan, **concern) == Some(RangePosition::InRange);
-        let open: Vec<&str> = FitCriterion::ALL.iter().filter(inside).map(|concern| concern.name()).collect();
+        let is_uncertain =
+            |criterion: &&FitCriterion| self.position(plan, **criterion) == Some(RangePosition::InRange);
+        let open: Vec<&str> =
+            FitCriterion::ALL.iter().filter(is_uncertain).map(|criterion| criterion.name()).collect();
         let open = if open.is_empty() {
             String::new()
         } else {
@@ -372,18 +374,18 @@ impl Fit {
 }
 
 fn describe_certain_gaps(missing: &[(FitCriterion, f64)]) -> String {
-    let (price, lacks): (Vec<_>, Vec<_>) =
-        missing.iter().copied().partition(|(concern, _)| *concern == FitCriterion::Price);
+    let (price, other_gaps): (Vec<_>, Vec<_>) =
+        missing.iter().copied().partition(|(criterion, _)| *criterion == FitCriterion::Price);
     let mut parts: Vec<String> = price.into_iter().map(describe_gap).collect();
-    if !lacks.is_empty() {
-        let lacks: Vec<String> = lacks.into_iter().map(describe_gap).collect();
-        parts.push(format!("lacks {}", lacks.join(", ")));
+    if !other_gaps.is_empty() {
+        let other_gaps: Vec<String> = other_gaps.into_iter().map(describe_gap).collect();
+        parts.push(format!("lacks {}", other_gaps.join(", ")));
     }
     parts.join("; ")
 }
 
-fn describe_gap((concern, amount): (FitCriterion, f64)) -> String {
-    match concern {
+fn describe_gap((criterion, amount): (FitCriterion, f64)) -> String {
+    match criterion {
         FitCriterion::Price => format!(
             "price too high (by at least {})",
             if amount < 1.0 { dollars_and_cents(amount) } else { dollars(amount) }

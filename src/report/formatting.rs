@@ -43,7 +43,7 @@ pub fn describe_cash_change(seen: &Observation) -> String {
     format!("{} over the last {span}", signed_dollars(seen.cash_change))
 }
 
-/// Describes for how long cash should last, as an 80 % range: `cash should last 9 to 19 weeks`.
+/// Describes how long cash should last, as an 80 % range: `cash should last 9 to 19 weeks`.
 pub fn describe_runway(runway: &Runway) -> String {
     let whole = |weeks: f64| pluralize(weeks as u32, "week");
     match (runway.earliest, runway.latest) {
@@ -68,13 +68,15 @@ pub fn describe_origin(origin: &BranchOrigin) -> String {
     format!("branch of {run} from week {week}{change}")
 }
 
-/// Describes the first decision that differs from the parent: `set_prices on day 28`, `no set_prices on day 28`.
+/// Describes the first decision of a branch that differs from the parent run: `set_prices on day 28`, `no set_prices on
+/// day 28`.
 pub fn describe_first_change(change: &FirstChange) -> String {
     let FirstChange { day, what, is_left_out } = change;
     format!("{}{what} on day {day}", if *is_left_out { "no " } else { "" })
 }
 
-/// Describes the lengths of two compared weeks if the lengths differ: `of 3 days, the previous week of 7`.
+/// Describes the lengths of two compared weeks: `of 3 days, the previous week of 7`. Returns `None` if the lengths are
+/// equal.
 pub fn describe_short_week(days: u32, before: u32) -> Option<String> {
     (days != before).then(|| format!("of {}, the previous week of {before}", pluralize(days, "day")))
 }
@@ -97,7 +99,7 @@ pub fn category_name(category: Category) -> &'static str {
     }
 }
 
-/// Formats a number rounded to a whole number.
+/// Formats a number without decimals.
 pub fn format_whole(value: f64) -> String {
     grouped_number(value + 0.0, 0)
 }
@@ -111,13 +113,13 @@ pub fn format_number(value: f64) -> String {
 /// Formats a range, with the lower endpoint rounded down and the upper endpoint rounded up: `18 to 87`.
 pub fn format_range(least: f64, most: f64, decimals: usize) -> String {
     let unit = (0..decimals).fold(1.0, |unit, _| unit * 10.0);
-    // Ignores rounding errors in whole numbers of units.
+    // The small term cancels rounding errors, so that whole multiples of the unit are not rounded away.
     let (least, most) = ((least * unit + 1e-9).floor() / unit, (most * unit - 1e-9).ceil() / unit);
     format!("{} to {}", grouped_number(least, decimals), grouped_number(most, decimals))
 }
 
-/// Formats the difference between two shares in percentage points: `9.3 pt`. Differences between shares are never
-/// given in percent.
+/// Formats the difference between two shares in percentage points: `9.3 pt`. Percent would be ambiguous for such
+/// differences.
 pub fn format_percentage_points(difference: f64, decimals: usize) -> String {
     format!("{} pt", grouped_number(100.0 * difference, decimals))
 }

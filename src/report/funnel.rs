@@ -1,16 +1,16 @@
-//! Sales funnel of enterprises: number of enterprises in each group that arrived, requested an offer and signed.
+//! Sales funnel of enterprises: how many enterprises of each group arrived, requested an offer and signed.
 
 use super::fit::{RangePosition, TrueValueRange};
 use super::formatting::{format_whole, pluralize};
 use novamind_session::identifiers::{ByGroup, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session};
 
-/// Number of a group's enterprises that reached each stage of the sales funnel, over the whole run.
+/// How many enterprises of a group reached each stage of the sales funnel, over the whole run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Funnel {
-    /// Enterprise group whose funnel is described.
+    /// Enterprise group that the other fields describe.
     pub group: Group,
-    /// Number of enterprises that arrived.
+    /// Number of enterprises that arrived, whether or not they requested an offer.
     pub enterprises: u32,
     /// Number of enterprises that requested an offer. The remaining enterprises found no plan with sufficient quality.
     pub requests: u32,
@@ -18,7 +18,7 @@ pub struct Funnel {
     pub deals: u32,
     /// Number of enterprises that found no plan with sufficient quality in the last four weeks.
     pub recently_lost: u32,
-    /// The plan that delivers the highest quality to the group, and the delivered quality.
+    /// The plan that delivers the highest quality to the group, and this quality; `None` if it is unknown.
     pub best_quality: Option<(Plan, f64)>,
     /// Quota of the plan with the highest quality, units per day.
     pub quota: f64,
@@ -26,7 +26,7 @@ pub struct Funnel {
     pub usage: TrueValueRange,
     /// Estimated mean required quality of the group.
     pub floor: TrueValueRange,
-    /// Day of the estimate of required quality.
+    /// Day for which required quality is estimated.
     pub study_day: u32,
 }
 
@@ -82,8 +82,8 @@ impl Funnel {
         self.enterprises.saturating_sub(self.requests)
     }
 
-    /// Describes the funnel in one line. Adds the delivered and the required quality if enterprises found no plan with
-    /// sufficient quality in the last four weeks.
+    /// Describes the funnel in one line. Adds the delivered and the required quality if some enterprises found no plan
+    /// with sufficient quality in the last four weeks.
     pub fn describe(&self) -> String {
         let mut text = format!(
             "{}: {} arrived, {} found no plan good enough, {} requested an offer, {} signed",

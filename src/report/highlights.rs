@@ -14,7 +14,7 @@ pub struct Highlight {
     pub text: String,
 }
 
-/// Number of outages that are listed one by one. Further outages are only counted.
+/// Maximum number of outages that are listed one by one. Further outages are only counted.
 const MAX_LISTED_OUTAGES: usize = 3;
 
 /// Returns the highlights of a run, sorted by day.
@@ -65,8 +65,8 @@ fn add_extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut
     if weeks.len() >= 3 {
         let by_change =
             |left: &&WeekFigures, right: &&WeekFigures| left.cash_change.total_cmp(&right.cash_change);
-        // A week that was shortened by the end of the run is not the best week, because it has fewer days in which to
-        // lose cash.
+        // A week that the end of the run shortened cannot be the best week, because it has fewer days in which to lose
+        // cash.
         let whole = weeks.iter().map(|week| week.days_run).max();
         let complete = weeks.iter().filter(|week| Some(week.days_run) == whole);
         if let Some(best) = complete.max_by(by_change) {

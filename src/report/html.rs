@@ -12,7 +12,7 @@ pub fn to_html(page: &Page) -> String {
     let tags: String = page.tags.iter().map(|tag| format!("<li>{}</li>", escape_html(tag))).collect();
     let mut body = String::new();
     let folded = page.blocks.iter().filter(|block| matches!(block, Block::Collapsible { .. })).count();
-    let mut shape = BlockContext { chart_count: 0, is_unfolded: folded <= MAX_EXPANDED_SECTIONS };
+    let mut context = BlockContext { chart_count: 0, is_unfolded: folded <= MAX_EXPANDED_SECTIONS };
     let mut open = false;
     for block in &page.blocks {
         if let Block::Heading(text) = block {
@@ -22,7 +22,7 @@ pub fn to_html(page: &Page) -> String {
             open = true;
             body.push_str(&format!("<section>\n<h2>{}</h2>\n", escape_html(text)));
         } else {
-            body.push_str(&block_html(block, &mut shape));
+            body.push_str(&block_html(block, &mut context));
         }
     }
     if open {
@@ -40,7 +40,7 @@ pub fn to_html(page: &Page) -> String {
     )
 }
 
-/// Maximum number of sections that are initially expanded. If a page has more sections, all of them are
+/// Maximum number of collapsible sections that are initially expanded. On a page with more sections, all of them are
 /// collapsed.
 const MAX_EXPANDED_SECTIONS: usize = 12;
 
@@ -49,7 +49,7 @@ struct BlockContext {
     is_unfolded: bool,
 }
 
-fn block_html(block: &Block, shape: &mut BlockContext) -> String {
+fn block_html(block: &Block, context: &mut BlockContext) -> String {
     match block {
         Block::Heading(text) => format!("<h2>{}</h2>\n", escape_html(text)),
         Block::Text(text) => format!("<p>{}</p>\n", escape_html(text)),
@@ -64,17 +64,17 @@ fn block_html(block: &Block, shape: &mut BlockContext) -> String {
             format!("<ol class=\"bars\">\n{}</ol>\n", bars.iter().map(bar_html).collect::<String>())
         }
         Block::Chart(chart) => {
-            shape.chart_count += 1;
+            context.chart_count += 1;
             format!(
                 "<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n",
                 escape_html(&chart.title),
-                svg::draw(chart, shape.chart_count)
+                svg::draw(chart, context.chart_count)
             )
         }
         Block::Collapsible { title, note, lines, points } => {
             let lines: String = lines.iter().map(|line| format!("<p>{}</p>\n", escape_html(line))).collect();
             let points = if points.is_empty() { String::new() } else { list_html(points) };
-            let open = if shape.is_unfolded { " open=\"open\"" } else { "" };
+            let open = if context.is_unfolded { " open=\"open\"" } else { "" };
             format!(
                 "<details{open}>\n<summary><span>{}</span> <span class=\"amount\">{}</span></summary>\n{lines}{points}</details>\n",
                 escape_html(title),

@@ -1,5 +1,5 @@
-//! Converts results of `get_group_insights` and `get_market_overview` for display. Each estimate is replaced by a
-//! range of possible true values, and the day of the estimates is added. Programs receive the unchanged results.
+//! Converts results of `get_group_insights` and `get_market_overview` for display: replaces each estimate with the
+//! range of possible true values, and adds the day of the estimates. Programs receive the unchanged results.
 
 use serde_json::{Map, Value, json};
 
@@ -49,7 +49,7 @@ fn replace_with_ranges(value: &Value, noise: f64) -> Value {
     }
 }
 
-/// Formats a range with enough decimals to show two significant digits of the lower endpoint.
+/// Formats a range with so many decimals that its lower endpoint has two significant digits.
 fn format_noise_range(estimate: f64, noise: f64) -> String {
     let (least, most) = true_value_range(estimate, noise);
     let decimals = match least.abs() {

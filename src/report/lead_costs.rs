@@ -1,17 +1,17 @@
-//! Cost per lead by channel and group: the last four weeks compared with the four consecutive earlier weeks with the
-//! lowest cost.
+//! Cost per lead by channel and group: the last four weeks, compared with those four consecutive earlier weeks that had
+//! the lowest cost.
 
 use novamind_session::identifiers::{ByGroup, Channel, Group};
 use novamind_session::{GroupWeek, PaidLeads};
 
 /// Number of weeks over which the cost per lead is computed. A single week has too few leads for a comparison.
 pub const WINDOW_WEEKS: usize = 4;
-/// Minimum number of leads in four weeks for a comparison of the cost per lead.
+/// Minimum number of leads in four weeks for comparing the cost per lead.
 pub const MIN_LEADS: f64 = 20.0;
-/// Minimum ratio of the current to the lowest cost per lead that counts as a rise.
+/// The cost per lead has risen if it is at least this multiple of the lowest cost per lead.
 pub const MIN_RISE_RATIO: f64 = 2.0;
 
-/// Results of advertising for a group in a channel over consecutive weeks.
+/// Results of the advertising for a group in a channel, over consecutive weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AdResults {
     /// Numbers of the first and the last week.
@@ -20,7 +20,7 @@ pub struct AdResults {
     pub leads: u32,
     /// Advertising spending in these weeks, dollars.
     pub spend: f64,
-    /// Number of these leads who paid a first bill; `None` for enterprises, which are billed weeks after they
+    /// Number of these leads who paid a first bill; `None` for enterprises, which pay their first bill weeks after they
     /// arrive.
     pub first_bills: Option<u32>,
 }
@@ -28,14 +28,14 @@ pub struct AdResults {
 /// Lead costs of a channel and group with advertising in the last four weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeadCost {
-    /// The advertising channel.
+    /// Channel in which the ads run.
     pub channel: Channel,
-    /// The advertised group.
+    /// Group for which the ads run.
     pub group: Group,
     /// Results of the last four weeks.
     pub recent: AdResults,
-    /// Results of the four consecutive earlier weeks with the lowest cost per lead. `None` if no four consecutive
-    /// weeks had enough leads.
+    /// Results of the four consecutive earlier weeks with the lowest cost per lead. `None` if no such weeks had enough
+    /// leads.
     pub cheapest: Option<AdResults>,
 }
 
@@ -70,10 +70,10 @@ impl AdResults {
 }
 
 impl LeadCost {
-    /// Returns the ratio of the current to the lowest cost per lead. Returns `None` if the ratio is too
-    /// small, or if the spending would bring fewer than [`MIN_LEADS`] leads at the lowest cost. A difference
-    /// between so few leads can be random. If there are no leads, the total spending counts as the cost of
-    /// one lead.
+    /// Returns the ratio of the current to the lowest cost per lead. Returns `None` if the ratio is below
+    /// [`MIN_RISE_RATIO`]. Also returns `None` if the spending would bring fewer than [`MIN_LEADS`] leads at the lowest
+    /// cost, because a difference between so few leads can be random. If there are no leads, the total spending counts
+    /// as the cost of one lead.
     pub fn cost_rise(&self) -> Option<f64> {
         let before = self.cheapest?.cost_per_lead()?;
         let now = self.recent.cost_per_lead().unwrap_or(self.recent.spend);

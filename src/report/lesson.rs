@@ -1,11 +1,11 @@
-//! Text for the events and pages of a lesson.
+//! Texts for the events and pages of a lesson.
 
 use super::formatting::format_money;
 use novamind_base::formatting::{compact_number, dollars_and_cents, parse_number, percent, short_dollars};
 use novamind_course::{GoalStatus, LessonQuestion, LessonStatus};
 use novamind_record::trajectory::record::{LessonEvent, RecordedLessonEvent};
 
-/// Returns the name of a lesson event.
+/// Returns the name that tables and texts use for a lesson event.
 pub fn event_name(event: LessonEvent) -> &'static str {
     match event {
         LessonEvent::Begun => "begun",
@@ -17,7 +17,7 @@ pub fn event_name(event: LessonEvent) -> &'static str {
     }
 }
 
-/// Describes a `lesson` event of a trajectory. Does not read the lesson file.
+/// Describes a `lesson` event of a trajectory, without reading the lesson file.
 pub fn describe_note(note: &RecordedLessonEvent) -> String {
     let number = note.number.unwrap_or(1);
     let value = note.value.map(compact_number).unwrap_or_else(|| "none".to_owned());
@@ -81,7 +81,7 @@ pub fn describe_question(question: &LessonQuestion) -> Vec<String> {
     lines
 }
 
-/// Describes the student's guess, and the outcome if the outcome is known.
+/// Describes the student's guess and, if it is known, the outcome.
 pub fn describe_guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
     let written = |value: f64| format_guess(question, value);
     let is_choice = !question.choices.is_empty();
@@ -92,7 +92,7 @@ pub fn describe_guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
     let guess = question.guess.map(|guess| sentence("You chose", "You guessed", guess));
     let outcome = match question.outcome {
         Some(outcome) => Some(sentence("The answer", "It was", outcome)),
-        None if question.guess.is_some() && question.told_at_end => {
+        None if question.guess.is_some() && question.is_shown_at_part_end => {
             Some("You will see the result at the end of this part.".to_owned())
         }
         None => None,
@@ -100,7 +100,7 @@ pub fn describe_guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
     guess.into_iter().chain(outcome).collect()
 }
 
-/// Returns whether a question asks for a share from 0 to 1.
+/// Returns whether a question asks for a share, from 0 to 1.
 pub fn asks_for_share(question: &LessonQuestion) -> bool {
     question.unit.starts_with("share")
 }
@@ -150,10 +150,10 @@ pub fn describe_goal(goal: &GoalStatus) -> String {
     format!("{mark}: {}{at}", goal.text)
 }
 
-/// Describes a goal's current value, compared with the target if the target is known.
+/// Describes a goal's current value and, if it is known, the target.
 pub fn describe_goal_progress(goal: &GoalStatus) -> Option<String> {
     let value = format_goal_amount(goal, goal.value?);
-    Some(match (goal.bound, goal.of_good_play) {
+    Some(match (goal.bound, goal.required_reference_share) {
         (None, _) => format!("{value} now; the target is shown at the end of the step"),
         (Some(bound), Some(share)) => {
             let good = format_goal_amount(goal, bound / share);
@@ -163,7 +163,7 @@ pub fn describe_goal_progress(goal: &GoalStatus) -> Option<String> {
                 percent(share, 1)
             )
         }
-        (Some(bound), None) if goal.wants_least => {
+        (Some(bound), None) if goal.is_bound_maximum => {
             format!("{value}, at most {}", format_goal_amount(goal, bound))
         }
         (Some(bound), None) => format!("{value}, at least {}", format_goal_amount(goal, bound)),

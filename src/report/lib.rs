@@ -1,8 +1,8 @@
 //! Reports on weeks and runs. A `RunReport` contains the data of a whole run and can be written as Markdown or HTML.
 //! Reports contain only recorded data. Causes are reported only if a re-simulation has computed them (`why`).
 //!
-//! Reports are computed from data that the player can see: observations, the journal, and guarded queries. Each
-//! measure is one pure function. `outline` converts a report to a `page::Page`, which `html` and `markdown` format.
+//! Reports are computed from data that the player can see: observations, the journal, and guarded queries. Each measure
+//! is computed by one pure function. `outline` converts a report to a `page::Page`, which `html` and `markdown` format.
 
 pub mod action_items;
 pub mod anonymization;
@@ -85,12 +85,12 @@ pub fn debrief_to_html(debrief: &Debrief) -> String {
     html::to_html(&debrief::debrief_page(debrief))
 }
 
-/// Returns the card of a run as text that is 80 columns wide.
+/// Returns the card of a run as text with lines of at most 80 columns.
 pub fn card_to_text(report: &RunReport) -> String {
     card::to_text(report)
 }
 
-/// Returns the card of a run as a self-contained SVG of 1200 by 630.
+/// Returns the card of a run as a self-contained SVG of 1200 by 630 pixels.
 pub fn card_to_svg(report: &RunReport) -> String {
     card::to_svg(report)
 }

@@ -111,8 +111,8 @@ fn curve_values(curve: &Curve) -> Vec<f64> {
     curve.points.iter().map(|point| point.1).collect()
 }
 
-/// Draws values as one row of bars, scaled from the smallest to the largest value. If no value is positive, the
-/// absolute values are drawn.
+/// Draws values as one row of bars, scaled between the smallest and the largest value. If no value is positive, draws
+/// the absolute values.
 fn sparkline(values: &[f64]) -> String {
     let is_cost = values.iter().all(|value| *value <= 0.0);
     let sizes: Vec<f64> =
@@ -151,8 +151,8 @@ pub fn escape(text: &str) -> String {
         };
         let marks = match letter {
             '\\' | '`' | '*' | '[' | ']' | '<' | '>' | '|' | '~' | '&' => true,
-            // Underscores inside words, such as names of tools and channels, are not escaped. The source is
-            // easier to read without backslashes.
+            // Underscores inside words, such as names of tools and channels, are not escaped, because backslashes make
+            // the source harder to read.
             '_' => !(inside_word(at.checked_sub(1)) && inside_word(at.checked_add(1))),
             '#' | '-' | '+' | '=' => {
                 at == 0 && characters.get(1).is_none_or(|next| !next.is_ascii_digit() && *next != '$')

@@ -10,8 +10,8 @@ use novamind_tools::ToolId;
 /// Number of weeks over which conversion is measured.
 pub const MEASURED_WEEKS: usize = 4;
 
-/// Settings that leads evaluate when they arrive. If one of them changes during the measured weeks, not all
-/// leads saw the same plans.
+/// Settings by which leads judge the plans when they arrive. If one of them changes during the measured weeks, the
+/// leads of these weeks did not all see the same plans.
 pub const SETTINGS_JUDGED_BY_LEADS: [ToolId; 4] =
     [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetUsageQuotas, ToolId::SetLeadPromotion];
 
@@ -20,7 +20,7 @@ pub const SETTINGS_JUDGED_BY_LEADS: [ToolId; 4] =
 pub struct MeasuredConversion {
     /// Number of individuals who signed up, or number of enterprises that requested an offer.
     pub taken: u32,
-    /// Number of leads.
+    /// Number of leads that arrived in the measured weeks.
     pub leads: u32,
     /// First and last measured week; `None` before the first week.
     pub weeks: Option<(u32, u32)>,
@@ -42,7 +42,7 @@ impl MeasuredConversion {
         let decided = company.decisions().iter().map(|decisions| (decisions.day, &decisions.changes));
         let days = decided
             .chain([(session.day(), &today)])
-            // A change at the start of the measured weeks applies to all leads in these weeks.
+            // A change at the start of the measured weeks affects all leads in these weeks.
             .filter(|(day, _)| *day > start)
             .filter(|(_, changes)| {
                 changes.iter().any(|change| SETTINGS_JUDGED_BY_LEADS.contains(&change.setting.tool()))

@@ -1,4 +1,4 @@
-//! The behavior measures of the paper that can be computed from visible data, with one function for each measure.
+//! The behavior measures of the paper that visible data suffices to compute, one function per measure.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ use novamind_session::{
     Decisions, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, submitted_forecasts,
 };
 
-/// Words that indicate planning.
+/// Words that count as signs of planning in rationales and notes.
 pub const PLANNING_WORDS: [&str; 16] = [
     "if",
     "unless",
@@ -32,34 +32,33 @@ pub const PLANNING_WORDS: [&str; 16] = [
     "instead",
 ];
 
-/// All behavior measures of a run.
+/// Behavior measures of a run, as defined in the paper.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BehaviorMeasures {
     /// Number of days that the company has survived.
     pub survival_days: u32,
-    /// Final or current cash, dollars.
+    /// Cash on the last simulated day, dollars.
     pub cash: f64,
-    /// Share of advertising spending on each group's best channel; `None` if there was no advertising.
+    /// Share of advertising spending on the best channel of each group; `None` if there was no advertising.
     pub channels: Option<BestTriedChannelSpend>,
-    /// Targeted share of development spending; `None` if there was no development spending.
+    /// Share of development spending that is targeted; `None` if there was no development spending.
     pub targeted_development: Option<f64>,
     /// Scores of the forecasts, by horizon.
     pub forecasts: Vec<ForecastScore>,
-    /// Number of weeks with naive forecasts, and total number of weeks.
+    /// Number of weeks with a naive forecast, and total number of weeks.
     pub filled_naively: (u32, u32),
     /// Scores of the forecasts that were filed before the first four weeks, by horizon.
     pub first_forecasts: Vec<ForecastScore>,
-    /// Share of advertising spending on the truly best channels; `None` if the run is unfinished or had no
-    /// advertising.
+    /// Share of advertising spending on the truly best channels; `None` if the run is unfinished or has no advertising.
     pub truly_best: Option<TrueBestChannelSpend>,
-    /// Number and distribution of tool calls.
+    /// How many tool calls a player made, and how evenly they are distributed over the tools.
     pub tools: ToolUse,
-    /// Length and planning words of rationales.
+    /// Length of the rationales, and their planning words.
     pub planning: PlanningMeasures,
 }
 
 impl BehaviorMeasures {
-    /// Computes the behavior measures of a run from the session and its advertising results.
+    /// Computes the behavior measures of a run. `channels` contains the advertising results of the run.
     pub fn from_session(session: &Session, channels: &[ChannelRow]) -> BehaviorMeasures {
         let (journal, day) = (session.journal(), session.day());
         BehaviorMeasures {
@@ -77,7 +76,7 @@ impl BehaviorMeasures {
     }
 }
 
-/// Returns the number of days that the company survived until bankruptcy, or has survived to date.
+/// Returns the number of days before bankruptcy or, if the company is not bankrupt, the number of days so far.
 pub fn survival_days(ended: Option<RunEndReason>, day: u32, last_day: u32) -> u32 {
     match ended {
         Some(RunEndReason::Horizon) => last_day,
@@ -85,13 +84,13 @@ pub fn survival_days(ended: Option<RunEndReason>, day: u32, last_day: u32) -> u3
     }
 }
 
-/// Minimum number of leads of a channel that can count as the best channel.
+/// Minimum number of leads that a channel must bring to count as the best channel.
 pub const MIN_CHANNEL_LEADS: f64 = 3.0;
 
 /// The channel with the most leads per dollar for a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BestChannel {
-    /// Name of the best channel.
+    /// Name of the channel with the most leads per dollar.
     pub channel: String,
     /// Number of leads per thousand dollars spent on this channel.
     pub leads_per_thousand: f64,
@@ -104,20 +103,19 @@ pub struct BestChannel {
 pub struct GroupAds {
     /// ID of the advertised group.
     pub group: String,
-    /// Number of channels on which money was spent for the group.
+    /// Number of channels in which money was spent for the group.
     pub tried: usize,
-    /// Advertising spending on the group, dollars.
+    /// Advertising spending for the group, dollars.
     pub spend: f64,
-    /// The best channel among those with spending; `None` if only one channel has spending, or if the best
-    /// channel has fewer than three leads.
+    /// The best of the channels with spending; `None` if only one channel has spending or the best channel brought
+    /// fewer than three leads.
     pub best: Option<BestChannel>,
 }
 
 /// Shares of advertising spending on the best channels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BestTriedChannelSpend {
-    /// Share of spending on the best channel, over all groups that have a best channel; `None` if no group
-    /// has one.
+    /// Share of spending on the best channel, over all groups with a best channel; `None` if no group has one.
     pub share: Option<f64>,
     /// Advertising results by group, highest spending first.
     pub groups: Vec<GroupAds>,
@@ -131,8 +129,9 @@ impl BestTriedChannelSpend {
     }
 }
 
-/// Returns the share of advertising spending on each group's best channel, which has the most leads per dollar. A group
-/// counts if at least two channels have spending and the best channel has enough leads.
+/// Returns the share of advertising spending on the best channel of each group, which is the channel with the most
+/// leads per dollar. A group counts if at least two of its channels have spending and the best channel has enough
+/// leads.
 pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<BestTriedChannelSpend> {
     let names: BTreeSet<&str> =
         rows.iter().filter(|row| row.spend > 0.0).map(|row| row.group.as_str()).collect();
@@ -156,7 +155,7 @@ pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<BestTriedChannelS
 fn best_channel(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
     let yield_of = |row: &ChannelRow| row.leads / row.spend;
     let best = paid.iter().max_by(|left, right| {
-        // Channels with equal results are ordered by spending, then alphabetically.
+        // Among channels with equally many leads per dollar, order by spending, then alphabetically.
         let by_spend = left.spend.total_cmp(&right.spend);
         yield_of(left).total_cmp(&yield_of(right)).then(by_spend).then(right.channel.cmp(&left.channel))
     })?;
@@ -167,19 +166,19 @@ fn best_channel(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
     })
 }
 
-/// Share of advertising spending on the truly best channels. The truly best of the five channels has the highest yield
-/// at the start of the run, which is hidden from players.
+/// Share of advertising spending on the truly best channels. The truly best channel of a group is the one of the five
+/// channels with the highest yield at the start of the run. Players cannot see it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrueBestChannelSpend {
-    /// Share of all advertising spending that went to the truly best channel of the advertised group; about
-    /// one fifth if spending is random.
+    /// Share of all advertising spending that went to the truly best channel of the advertised group; about one fifth
+    /// if spending is random.
     pub share: f64,
     /// Share of spending on the truly best channel, by group.
     pub groups: BTreeMap<String, f64>,
 }
 
-/// Returns the share of advertising spending on the truly best channels. Returns `None` if there was no
-/// advertising or if the best channel of a group is unknown.
+/// Returns the share of advertising spending on the truly best channels. Returns `None` if there was no advertising or
+/// the best channel of a group is unknown.
 pub fn true_best_channel_share(
     rows: &[ChannelRow],
     best: impl Fn(Group) -> Option<Channel>,
@@ -196,10 +195,10 @@ pub fn true_best_channel_share(
     (all > 0.0).then(|| TrueBestChannelSpend { share: on_best / all, groups: shares.collect() })
 }
 
-/// Number of weeks at the start of a run whose forecasts are scored separately.
+/// Number of weeks at the start of a run for which forecasts are scored separately.
 pub const FIRST_WEEK_COUNT: usize = 4;
 
-/// Returns the scores of forecasts that were filed before the first four weeks, by horizon.
+/// Returns the scores, by horizon, of the forecasts that were filed before the first four weeks.
 pub fn first_forecast_scores(journal: &[JournalEntry], weeks: &[WeekFigures]) -> Vec<ForecastScore> {
     let filed = submitted_forecasts(journal, weeks);
     let days: BTreeSet<u32> = filed.iter().map(|one| one.day).collect();
@@ -209,7 +208,7 @@ pub fn first_forecast_scores(journal: &[JournalEntry], weeks: &[WeekFigures]) ->
     horizons.into_iter().map(|horizon| ForecastScore::from_forecasts(horizon, &first)).collect()
 }
 
-/// Returns the targeted share of development spending over the simulated days, or `None` if there was no
+/// Returns the share of development spending that is targeted, over the simulated days. Returns `None` if there was no
 /// development spending.
 pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
     let mut general = 0.0;
@@ -233,7 +232,7 @@ pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
     (all > 0.0).then(|| aimed / all)
 }
 
-/// Number and distribution of tool calls.
+/// How many tool calls a player made, and how evenly they are distributed over the tools.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ToolUse {
     /// Number of accepted calls that changed the run.
@@ -242,13 +241,12 @@ pub struct ToolUse {
     pub per_week: f64,
     /// Number of calls by tool, most used first.
     pub tools: Vec<(String, u32)>,
-    /// Evenness of the calls over the tools that were used, from 0 to 1; `None` if fewer than two tools were
-    /// used.
+    /// Evenness of the calls over the used tools, from 0 to 1; `None` if fewer than two tools were used.
     pub evenness: Option<f64>,
 }
 
-/// Returns the entropy of the counts divided by the entropy of equal counts: 1 for equal counts, near 0 if
-/// one count dominates. Returns `None` if there are fewer than two positive counts.
+/// Returns the entropy of the counts divided by the entropy of equal counts: 1 for equal counts, near 0 if one count
+/// dominates. Returns `None` if fewer than two counts are positive.
 pub fn normalized_entropy(counts: &[u32]) -> Option<f64> {
     let all: f64 = counts.iter().map(|count| f64::from(*count)).sum();
     let used = counts.iter().filter(|count| **count > 0);
@@ -258,7 +256,7 @@ pub fn normalized_entropy(counts: &[u32]) -> Option<f64> {
     (kinds > 1).then(|| (entropy / libm::log(kinds as f64)).min(1.0))
 }
 
-/// Counts the accepted calls that changed the run, by tool.
+/// Counts the accepted calls that changed the run, in total and by tool.
 pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
     let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
     let mut weeks = 0u32;
@@ -277,10 +275,10 @@ pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
     ToolUse { calls, per_week: f64::from(calls) / f64::from(weeks.max(1)), tools, evenness }
 }
 
-/// Length and planning words of rationales.
+/// Mean length of rationales, and mean number of their planning words.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct PlanningMeasures {
-    /// Number of rationales.
+    /// Number of submitted rationales.
     pub rationales: u32,
     /// Mean number of words per rationale.
     pub words_each: f64,
@@ -293,9 +291,9 @@ pub struct PlanningMeasures {
 pub struct WordCounts {
     /// Total number of words.
     pub words: usize,
-    /// Number of words that are [`PLANNING_WORDS`].
+    /// Number of words that [`PLANNING_WORDS`] contains.
     pub planning: usize,
-    /// Number of times the word "if" occurs.
+    /// Number of times that the word "if" occurs.
     pub ifs: usize,
 }
 
@@ -311,14 +309,14 @@ impl WordCounts {
         }
     }
 
-    /// Returns the number of planning words per hundred words, or `None` if there are no words.
+    /// Returns the number of planning words per hundred words, or `None` if the text has no words.
     pub fn planning_per_hundred(&self) -> Option<f64> {
         (self.words > 0).then(|| 100.0 * self.planning as f64 / self.words as f64)
     }
 }
 
-/// Returns the sentences of a text that contain a planning word, in order. A sentence ends at a full stop, question
-/// mark or exclamation mark followed by a space, at a semicolon, or at the end of a line.
+/// Returns the sentences of a text that contain a planning word, in order. A sentence ends at a semicolon, at the end
+/// of a line, or at a full stop, question mark or exclamation mark that is followed by a space.
 pub fn planning_sentences(text: &str) -> Vec<String> {
     let mut sentences = Vec::new();
     for line in text.lines() {
@@ -358,7 +356,7 @@ pub fn planning_measures(journal: &[JournalEntry]) -> PlanningMeasures {
     PlanningMeasures { rationales, words_each: each(all.words), planning_each: each(all.planning) }
 }
 
-/// Returns the number of weeks with at least one naive forecast that is due within the run, and the total
+/// Returns the number of weeks for which at least one filed forecast is naive and due within the run, and the total
 /// number of weeks.
 pub fn naive_forecast_weeks(journal: &[JournalEntry], last_day: u32) -> (u32, u32) {
     let filed = journal.iter().filter_map(|entry| match entry {
@@ -420,7 +418,8 @@ mod tests {
             (channel_spend.share, channel_spend.groups["S1"], channel_spend.groups["S3"]),
             (0.5, 0.375, 1.0)
         );
-        // If all money is spent on one wrong channel, channels cannot be compared and the share of the best channel is 0.
+        // With all money on one wrong channel, channels cannot be compared, and the share of the truly best channel is
+        // 0.
         let wrong = [ads("S1", "linkedin", 50.0, 100.0)];
         assert_eq!(true_best_channel_share(&wrong, best).map(|spend| spend.share), Some(0.0));
         assert_eq!(best_tried_channel_share(&wrong).and_then(|skill| skill.share), None);
@@ -463,7 +462,7 @@ mod tests {
         let run = [week(0, vec![general, aimed]), week(7, vec![]), week(14, vec![ended])];
         assert_eq!(targeted_development(&run), Some(600.0 / 900.0));
         assert_eq!(targeted_development(&[week(0, vec![])]), None);
-        // The last week of a bankrupt company is shorter.
+        // The last week of a bankrupt company has fewer days.
         let [general, aimed] = [set(SettingId::Development, 100.0), run[0].changes[1]];
         let short = Decisions { until: 9, ..week(7, vec![aimed]) };
         assert_eq!(targeted_development(&[week(0, vec![general]), short]), Some(600.0 / 1500.0));

@@ -1,4 +1,4 @@
-//! Results of strong policies that play the same seed and scenario as a finished run.
+//! Results of strong policies on the seed and scenario of a finished run.
 
 use std::path::Path;
 
@@ -8,32 +8,32 @@ use novamind_base::formatting::dollars;
 use novamind_record::folder::configuration::Configuration;
 use novamind_tools::Rejection;
 
-/// Result of a policy with the seed and scenario of a run.
+/// Result of a policy on the seed and scenario of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OpponentResult {
     /// Name of the policy.
     pub policy: String,
-    /// Last day that was simulated with the policy.
+    /// Last day that the policy played.
     pub day: u32,
-    /// Cash on the last simulated day, dollars. The score is 0 after a bankruptcy.
+    /// Cash at the end of this day, dollars. The score is 0 after a bankruptcy.
     pub cash: f64,
-    /// Whether the company went bankrupt on the last simulated day.
+    /// Whether the company went bankrupt on this day.
     pub is_bankrupt: bool,
-    /// The rejection that stopped the policy on the last simulated day, if any.
+    /// The rejection that stopped the policy on this day, if any.
     pub stopped: Option<String>,
 }
 
 /// Results of all opponents of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OpponentResults {
-    /// Day on which the opponents are compared: the planned last day of the run, or of the part of a lesson.
+    /// Day on which the results are compared: the planned last day of the run or, in a lesson, of its part.
     pub day: u32,
     /// Results of the policies, highest score first.
     pub policies: Vec<OpponentResult>,
 }
 
-/// Plays the opponents of the run in a folder for as long as the callback returns `true`. Returns `None` if
-/// the callback stopped the simulation.
+/// Function that plays the opponents of the run in a folder while the callback returns `true`. It returns `None` if the
+/// callback stopped it.
 pub type PlayOpponentsFn =
     fn(&Path, &Configuration, &(dyn Fn() -> bool + Sync)) -> Result<Option<OpponentResults>, Rejection>;
 
@@ -43,7 +43,7 @@ impl OpponentResult {
         if self.is_bankrupt { 0.0 } else { self.cash }
     }
 
-    /// Describes the final cash of the policy, or the reason why the policy ended early.
+    /// Describes the final cash of the policy, or why the policy ended early.
     pub fn describe(&self) -> String {
         match &self.stopped {
             Some(why) => format!("{} when it stopped on day {}: {why}", dollars(self.cash), self.day),

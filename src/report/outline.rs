@@ -71,7 +71,7 @@ fn result_facts(report: &RunReport) -> Vec<NamedValue> {
     let last_day = format_whole(f64::from(seen.last_day));
     let most = report.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = report.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
-    // The runway cannot be derived from the cash change since the start, so it is shown separately.
+    // The runway does not follow from the cash change since the start, so it is shown separately.
     let runway = match seen.ended {
         Some(_) => String::new(),
         None => describe_runway(&seen.runway),
@@ -156,7 +156,7 @@ fn ranking_blocks(report: &RunReport) -> Vec<Block> {
     blocks
 }
 
-/// Describes cash and last day of a ranked result: `$12,630,078 · 504 days`.
+/// Describes the cash and the last day of a ranked result: `$12,630,078 · 504 days`.
 fn describe_place(place: &super::ranking::RankedResult) -> String {
     let days = place.horizon_days.map_or(String::new(), |days| format!(" · {days} days"));
     format!("{}{days}", format_money(place.cash))
@@ -264,7 +264,7 @@ fn forecast_blocks(report: &RunReport) -> Vec<Block> {
     blocks
 }
 
-/// Formats leads per thousand dollars. Values below 1 have three decimals; other values have one.
+/// Formats leads per thousand dollars, with three decimals below 1 and one decimal otherwise.
 fn format_leads_per_thousand(leads: f64) -> String {
     grouped_number(leads, if leads < 1.0 { 3 } else { 1 })
 }

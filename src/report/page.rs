@@ -1,13 +1,13 @@
-//! Format-independent model of a page: headings, sentences, tables and charts.
+//! A page of headings, sentences, tables and charts, independent of the output format.
 
-/// A page of a report, independent of the output format.
+/// A page that can be written as HTML or Markdown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
     /// Title of the page.
     pub title: String,
     /// The main result of the report in one sentence.
     pub headline: String,
-    /// Short facts about the run.
+    /// Short facts about the run, such as seed and scenario.
     pub tags: Vec<String>,
     /// Content of the page, in order.
     pub blocks: Vec<Block>,
@@ -18,31 +18,31 @@ pub struct Page {
 /// An element of a page.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Block {
-    /// A heading.
+    /// Heading of a section.
     Heading(&'static str),
-    /// A paragraph.
+    /// Paragraph of text.
     Text(String),
-    /// A note in small print.
+    /// Paragraph in small print.
     Note(String),
-    /// A warning.
+    /// Paragraph that is marked as a warning.
     Warning(String),
     /// Key figures with their names.
     Facts(Vec<NamedValue>),
-    /// A table.
+    /// Rows with column headings.
     Table(Table),
     /// Values as horizontal bars.
     Bars(Vec<Bar>),
-    /// A chart.
+    /// Curves or stacked bars.
     Chart(Chart),
     /// A section that can be collapsed.
     Collapsible {
         /// Title of the section.
         title: String,
-        /// Summary at the right end of the title line.
+        /// Summary that is shown at the right end of the title line.
         note: String,
         /// Paragraphs of the section.
         lines: Vec<String>,
-        /// Items of the list in the section.
+        /// List items below the paragraphs.
         points: Vec<String>,
     },
 }
@@ -52,9 +52,9 @@ pub enum Block {
 pub struct NamedValue {
     /// Name of the value.
     pub name: String,
-    /// Formatted value.
+    /// Value as text, with its unit.
     pub value: String,
-    /// Reference value or explanation of the value; can be empty.
+    /// Explanation or reference value; can be empty.
     pub note: String,
 }
 
@@ -68,7 +68,7 @@ impl NamedValue {
 /// A table of a page.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// Heading of each column, and whether the column is numeric.
+    /// Heading of each column, and whether its cells are numbers.
     pub columns: Vec<(&'static str, bool)>,
     /// Rows of the table, each with its cells.
     pub rows: Vec<Vec<String>>,
@@ -79,11 +79,11 @@ pub struct Table {
 pub struct Bar {
     /// Name of the bar.
     pub name: String,
-    /// Formatted value of the bar.
+    /// Value as text, shown at the end of the bar.
     pub value_text: String,
-    /// Length of the bar as a share of the full width, from 0 to 1.
+    /// Length of the bar as a share of the longest possible bar, from 0 to 1.
     pub share: f64,
-    /// Whether the bar is highlighted.
+    /// Whether the bar stands out, as that of the reported run does.
     pub is_highlighted: bool,
 }
 
@@ -92,33 +92,33 @@ pub struct Bar {
 pub struct Chart {
     /// Title of the chart.
     pub title: String,
-    /// Text alternative of the chart.
+    /// Sentence that describes the chart for readers who cannot see it.
     pub summary: String,
-    /// Unit of the horizontal axis.
+    /// Label of the horizontal axis, such as its unit.
     pub x_label: &'static str,
-    /// Whether values are dollars.
+    /// Whether values are dollars, which determines the labels of the vertical axis.
     pub is_in_dollars: bool,
-    /// Limits of the vertical axis; `None` unless outliers would flatten the other values.
+    /// Limits of the vertical axis, for charts with outliers that would flatten the other values.
     pub y_limits: Option<(f64, f64)>,
-    /// Data of the chart as lines or stacked bars.
+    /// What the chart shows.
     pub plot: Plot,
 }
 
-/// Data of a chart.
+/// What a chart draws.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Plot {
-    /// Lines with an optional shaded interval.
+    /// Lines, and optionally a shaded interval.
     Lines {
-        /// Lines of the chart.
+        /// Lines in the order of the legend.
         curves: Vec<Curve>,
         /// Shaded interval behind the lines, if any.
         band: Option<Band>,
     },
-    /// Stacked bars. Positive values are stacked upwards, and negative values are stacked downwards.
+    /// Stacked bars. Positive values are stacked upward from zero, and negative values downward.
     Stacks {
         /// Position of each bar on the horizontal axis.
         positions: Vec<f64>,
-        /// Series of values that are stacked.
+        /// Series from the zero line outward, in the order of the legend.
         series: Vec<StackSeries>,
     },
 }
@@ -128,7 +128,7 @@ pub enum Plot {
 pub struct Curve {
     /// Name of the line in the legend.
     pub name: String,
-    /// Points of the line, as position and value.
+    /// Horizontal position and value of each point.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -137,7 +137,7 @@ pub struct Curve {
 pub struct Band {
     /// Name of the interval in the legend.
     pub name: String,
-    /// Position, lower endpoint and upper endpoint of the interval.
+    /// Horizontal position, lower endpoint and upper endpoint of each point of the interval.
     pub points: Vec<(f64, f64, f64)>,
 }
 
@@ -146,6 +146,6 @@ pub struct Band {
 pub struct StackSeries {
     /// Name of the series in the legend.
     pub name: String,
-    /// One value for each bar.
+    /// One value per bar.
     pub values: Vec<f64>,
 }

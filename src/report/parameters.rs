@@ -1,4 +1,4 @@
-//! Text for parameters that a debug run has changed.
+//! Texts for parameters that a debug run has changed.
 
 use serde_json::Value;
 
@@ -28,7 +28,7 @@ pub fn describe_start_day(from_day: Option<u32>) -> String {
     from_day.map_or(String::new(), |day| format!(" from day {day}"))
 }
 
-/// Lists the parameters that differ from the scenario, and the changes that are scheduled for a later day.
+/// Lists the parameters that differ from the scenario, and the changes that take effect on a later day.
 pub fn describe_changed_parameters(changed: &ChangedParameters) -> Vec<String> {
     let against = match &changed.scenario {
         Some(name) => format!("scenario {name}"),

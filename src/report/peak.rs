@@ -1,4 +1,4 @@
-//! Projected peak usage of next week: usage on the busiest day of the last week, multiplied by its growth
+//! Projected peak usage of next week: usage on the busiest day of the last week, multiplied by the growth of this usage
 //! since the week before. Every text states that the value is a projection.
 
 use super::formatting::format_whole;
@@ -15,7 +15,7 @@ pub struct PeakProjection {
 }
 
 impl PeakProjection {
-    /// Returns the projection, or `None` unless the last two weeks are complete and have usage.
+    /// Returns the projection, or `None` if one of the last two weeks is incomplete or has no usage.
     pub fn from_weeks(weeks: &[WeekFigures]) -> Option<PeakProjection> {
         let [.., before, last] = weeks else { return None };
         let is_whole = |week: &WeekFigures| week.days_run == 7 && week.busiest_day > 0;
@@ -48,8 +48,8 @@ impl PeakProjection {
     }
 }
 
-/// Compares a capacity tier with the busiest day of the last week: `tier 1 serves 80,000 units a day; the busiest day of the
-/// last week had 61,000, 76% of it`.
+/// Compares the usage that a capacity tier serves with the busiest day of the last week: `tier 1 serves 80,000 units a
+/// day; the busiest day of the last week had 61,000, 76% of it`.
 pub fn describe_peak_and_tier(weeks: &[WeekFigures], tier: u32, units: f64) -> String {
     let holds = format!("tier {tier} serves {} units a day", format_whole(units));
     match weeks.last() {

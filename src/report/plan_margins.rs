@@ -1,7 +1,7 @@
-//! Gross margins of plans: subscription revenue compared with the compute cost of usage, on every model tier.
-//! The Product screen, forms and plain mode use the same definition. Compute cost is the cost of the last
-//! day's usage multiplied by 30. Revenue is the monthly price of the subscriptions that could use the product
-//! on the last day. Subscriptions that started on the last day have no usage yet.
+//! Gross margins of plans: subscription revenue compared with the compute cost of usage, on every model tier. The
+//! Product screen, forms and plain mode use the same definition. The compute cost is 30 times the cost of the last
+//! day's usage. The revenue is the monthly price of the subscriptions that could use the product on the last day. It
+//! excludes subscriptions that started on the last day, because they have no usage yet.
 
 mod sentences;
 
@@ -19,7 +19,7 @@ use novamind_tools::{Rejection, ToolId};
 const SUBSCRIBERS_SQL: &str = include_str!("../../assets/readings/subscribers.sql");
 const USAGE_SQL: &str = include_str!("../../assets/readings/usage.sql");
 const DAYS_PER_MONTH: f64 = 30.0;
-/// Text that is shown instead of margins until usage has been measured.
+/// Text that replaces the margins until usage has been measured.
 const NO_USAGE_MESSAGE: &str = "no margins: usage has not been measured yet";
 
 /// Subscribers of a plan, their payments and their usage on the last day.
@@ -64,8 +64,8 @@ impl PlanUsage {
         self.units_per_seat().map(|usage| usage * DAYS_PER_MONTH * unit_cost)
     }
 
-    /// Returns the revenue in dollars per seat per month. Only subscriptions with measured usage count, or all
-    /// subscriptions if no usage was measured.
+    /// Returns the revenue in dollars per seat per month. Only subscriptions with measured usage count. If no usage was
+    /// measured, all subscriptions count.
     pub fn revenue_per_seat(&self) -> Option<f64> {
         match self.measured_seats > 0.0 {
             true => Some(self.measured_revenue / self.measured_seats),
@@ -77,12 +77,13 @@ impl PlanUsage {
         self.revenue_per_seat().filter(|_| self.units_per_seat().is_some())
     }
 
-    /// Returns the share of revenue that is left after compute. `unit_cost` is in dollars per unit.
+    /// Returns the share of revenue that compute leaves over, or `None` if it is unknown. `unit_cost` is in dollars per
+    /// unit.
     pub fn margin(&self, unit_cost: f64) -> Option<f64> {
         margin(self.revenue_per_seat()?, self.compute_cost(unit_cost)?)
     }
 
-    /// Returns the margin if every customer uses the full quota. `quota` is in units per day.
+    /// Returns the margin that the plan would have if every customer used the full quota. `quota` is in units per day.
     fn margin_at_full_quota(&self, quota: f64, unit_cost: f64) -> Option<f64> {
         let full = PlanUsage { measured_units: self.measured_subscriptions * quota, ..*self };
         full.margin(unit_cost)
@@ -93,7 +94,7 @@ fn margin(price: f64, compute: f64) -> Option<f64> {
     (price > 0.0).then(|| 1.0 - compute / price)
 }
 
-/// Revenue and usage by group and plan.
+/// Revenue and usage, by group and plan.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PlanSales {
     subscribed: Vec<(Group, Plan, PlanUsage)>,
@@ -101,7 +102,7 @@ pub struct PlanSales {
 }
 
 impl PlanSales {
-    /// Reads the database of a run without recording the queries.
+    /// Reads the database of a run. The queries are not recorded.
     ///
     /// # Errors
     /// Returns an error if the run has no database or the database cannot be read.
@@ -114,8 +115,7 @@ impl PlanSales {
         Ok(sales)
     }
 
-    /// Sets the subscribers from a query result with the columns group, plan, customers, seats and dollars
-    /// per month.
+    /// Sets the subscribers from a query result with these columns: group, plan, customers, seats, dollars per month.
     pub fn set_subscribers(&mut self, rows: &QueryResult) {
         self.subscribed = by_plan(rows, |row| PlanUsage {
             customers: number_at(row, 2),
@@ -125,8 +125,8 @@ impl PlanSales {
         });
     }
 
-    /// Sets the usage from a query result with the columns group, plan, subscriptions, seats, units and
-    /// dollars per month.
+    /// Sets the usage from a query result with these columns: group, plan, subscriptions, seats, units, dollars per
+    /// month.
     pub fn set_usage(&mut self, rows: &QueryResult) {
         self.used = by_plan(rows, |row| PlanUsage {
             measured_subscriptions: number_at(row, 2),
@@ -141,7 +141,7 @@ impl PlanSales {
         Plan::ALL.into_iter().any(|plan| self.usage_of_plan(plan).units_per_seat().is_some())
     }
 
-    /// Returns the usage of a plan summed over all groups.
+    /// Returns the usage of a plan, summed over all groups.
     pub fn usage_of_plan(&self, plan: Plan) -> PlanUsage {
         self.sum(|_, row_plan| row_plan == plan)
     }
@@ -165,33 +165,32 @@ fn by_plan(rows: &QueryResult, read: impl Fn(&[Cell]) -> PlanUsage) -> Vec<(Grou
     rows.rows.iter().filter_map(parse_row).collect()
 }
 
-/// Price, model tier and quota of a plan in a draft.
+/// Price, model tier and quota of a plan, in force or in an edited form.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DraftPlanTerms {
     /// List price, dollars per seat per month.
     pub price: f64,
-    /// Model tier of the plan.
+    /// Model tier that serves the plan.
     pub tier: u8,
     /// Quota, units per customer per day.
     pub quota: f64,
 }
 
 impl DraftPlanTerms {
-    /// Returns the compute cost in dollars per unit on the current model tier, or `None` if the tier is
-    /// unknown.
+    /// Returns the compute cost in dollars per unit on the plan's model tier, or `None` if the tier is unknown.
     fn unit_cost(&self, models: &[(u8, f64)]) -> Option<f64> {
         models.iter().find(|(tier, _)| *tier == self.tier).map(|(_, unit_cost)| *unit_cost)
     }
 }
 
-/// Setting that a form changes, which determines the displayed margins.
+/// The setting that a form changes. It determines which margins the form shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MarginSetting {
-    /// List prices. Margins at the list price are also shown.
+    /// List prices. The form also shows margins at the list price.
     Price,
     /// Model tiers of the plans.
     Tier,
-    /// Quotas. Margins at full quota are also shown.
+    /// Quotas. The form also shows margins at full quota.
     Quota,
 }
 
@@ -221,7 +220,7 @@ impl MarginSetting {
     }
 }
 
-/// Returns a table of margins for every plan and model tier, as a header and lines of text.
+/// Returns a table of the margins of every plan on every model tier: a header, and lines of text.
 pub fn margin_lines(
     sales: &PlanSales,
     terms: &ByPlan<DraftPlanTerms>,
@@ -267,7 +266,7 @@ pub fn margin_lines(
     lines
 }
 
-/// Returns the margin of every plan on its current model tier, for small windows: a header, then one line for each plan.
+/// Returns the margin of every plan on its current model tier, for small windows: a header, and one line per plan.
 pub fn margin_summary(
     sales: &PlanSales,
     terms: &ByPlan<DraftPlanTerms>,
@@ -312,7 +311,8 @@ fn differs_by_a_cent(list: f64, paid: f64) -> bool {
     list > 0.0 && (list - paid).abs() >= 0.005
 }
 
-/// Lists the margins of a plan by group on the plan's model tier. Returns `None` if only one group subscribes to the plan.
+/// Lists the margins of a plan by group, on the plan's model tier. Returns `None` if only one group subscribes to the
+/// plan.
 fn describe_groups(
     sales: &PlanSales,
     plan: Plan,
@@ -331,7 +331,7 @@ fn describe_groups(
     })
 }
 
-/// Formats a margin. A loss of more than about ten times the price is shown as `loss`.
+/// Formats a margin. Shows `loss` if the loss exceeds about ten times the price.
 fn format_margin(margin: Option<f64>) -> String {
     margin.map_or("–".to_owned(), |margin| match margin < -9.99 {
         true => "loss".to_owned(),

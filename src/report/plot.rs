@@ -5,14 +5,14 @@ use unicode_width::UnicodeWidthStr;
 use super::formatting::format_tick;
 use novamind_base::formatting::compact_number;
 
-/// Scale of an axis.
+/// How values are mapped to positions on an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AxisScale {
-    /// Linear scale.
+    /// Positions are proportional to values.
     Linear,
     /// Linear scale with labels only at whole numbers, for days and weeks.
     Whole,
-    /// Logarithmic scale. Values of zero and below are not drawn.
+    /// Logarithmic scale. Values that are not positive are not drawn.
     Logarithmic,
 }
 
@@ -25,7 +25,7 @@ impl AxisScale {
         }
     }
 
-    /// Maps a value to its position on the axis, or to NaN if the value cannot be drawn.
+    /// Maps a value to its position on the axis. Returns NaN if the scale cannot show the value.
     pub fn position(self, value: f64) -> f64 {
         match self {
             AxisScale::Linear | AxisScale::Whole => value,
@@ -39,7 +39,7 @@ impl AxisScale {
 pub struct PlotArea {
     /// Width in characters, including labels.
     pub width: usize,
-    /// Height in lines, excluding the labels below.
+    /// Height in lines, excluding the labels below the chart.
     pub height: usize,
     /// Scale of the horizontal axis.
     pub x_scale: AxisScale,
@@ -61,13 +61,13 @@ pub fn sparkline_char(share: f64) -> char {
     SPARKLINE_CHARS[((share * highest as f64).round() as usize).min(highest)]
 }
 
-/// A series of points that is drawn with one character. A later series covers earlier ones.
+/// A series of points that are drawn with the same character. Later series cover earlier ones.
 pub struct PlotSeries<'a> {
-    /// Character with which the points are drawn.
+    /// Character that represents the points.
     pub mark: char,
     /// Points of the series, as horizontal and vertical values.
     pub points: &'a [(f64, f64)],
-    /// Whether the points are connected.
+    /// Whether lines connect the points.
     pub is_line: bool,
 }
 
@@ -123,7 +123,7 @@ pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
     text + &format!("{:>10} {}{:>width$}\n", "", compact_number(left), compact_number(right))
 }
 
-/// Draws horizontal bars, each with its label on the left and its value on the right.
+/// Draws horizontal bars. Each bar has its label on the left and its value on the right.
 pub fn horizontal_bars(points: &[(f64, f64)], width: usize) -> String {
     let max = points.iter().map(|point| point.1).filter(|value| value.is_finite()).fold(0.0, f64::max);
     let (labels, values): (Vec<String>, Vec<String>) =
@@ -143,15 +143,16 @@ fn interpolate(from: f64, to: f64, share: f64) -> f64 {
     from + (to - from) * share
 }
 
-/// Returns the range of the values, or `None` if there are no values. If all values are equal, the range is
-/// widened.
+/// Returns the range of the values, or `None` if there are no values. If all values are equal, returns a wider range
+/// around them.
 fn padded_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (min, max) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), value| (min.min(value), max.max(value)));
     let is_range_wide = max - min > 1e-9 * max.abs().max(min.abs()).min(1.0);
     (min <= max).then_some(match min {
         _ if is_range_wide => (min, max),
-        // A positive value is widened by factors, so that the range is positive and can be drawn on a logarithmic scale.
+        // A positive value is multiplied, so that the lower endpoint is also positive and a logarithmic scale can show
+        // it.
         level if level > 0.0 => (0.5 * level, 1.5 * level),
         level => (level - 1.0, level + 1.0),
     })

@@ -1,11 +1,11 @@
-//! Number of leads by group in the week before and after a post. Visible data does not show which leads were caused by
-//! the post.
+//! Number of leads by group in the weeks before and after a post. Visible data does not show which leads the post
+//! caused.
 
 use super::formatting::format_whole;
 use novamind_session::GroupWeek;
 use novamind_session::identifiers::{ByGroup, Group};
 
-/// Describes the number of leads in the weeks before and after a decision day. Returns no lines until a week has run
+/// Describes the number of leads in the weeks before and after a decision day. Returns no lines if no week has run
 /// after this day.
 pub fn lead_lines_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> Vec<String> {
     let after = day as usize / 7;

@@ -1,5 +1,5 @@
-//! Formats simple Markdown for screens: headings, lists, emphasis, quotes and code blocks. Line breaks in the
-//! source become spaces, and every word is kept.
+//! Formats simple Markdown for screens: headings, lists, emphasis, quotes and code blocks. Line breaks in the source
+//! become spaces. No word is lost.
 
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
@@ -129,8 +129,7 @@ fn parse_blocks(text: &str) -> Vec<MarkdownBlock> {
     blocks
 }
 
-/// Returns the block element that starts with this line, as determined by its first characters. Returns
-/// `None` for ordinary text.
+/// Returns the block element that the first characters of a line start, or `None` for ordinary text.
 fn block_at_line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
     if bare.is_empty() {
         return Some(MarkdownBlock::Blank);
@@ -158,7 +157,7 @@ fn block_at_line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
     numbered.map(|text| MarkdownBlock::Item(format!("{margin}{}. ", &bare[..digits]), text.trim().to_owned()))
 }
 
-/// Returns the characters of a text, each with its style. Omits emphasis marks.
+/// Returns the characters of a text with their styles. Omits emphasis marks.
 fn styled_chars(text: &str) -> Vec<(char, TextStyle)> {
     let characters: Vec<char> = text.chars().collect();
     let mut found = Vec::new();
@@ -185,7 +184,8 @@ fn styled_chars(text: &str) -> Vec<(char, TextStyle)> {
     found
 }
 
-/// Returns the characters between two equal emphasis marks at the start of a text, and the length including both marks.
+/// Returns the characters between two equal emphasis marks at the start of a text, and the length of the span with both
+/// marks.
 fn emphasized_span(rest: &[char], before: Option<char>) -> Option<(&[char], usize)> {
     const MARKS: [&[char]; 5] = [&['*', '*'], &['_', '_'], &['*'], &['_'], &['`']];
     let mark = MARKS.into_iter().find(|mark| rest.starts_with(mark))?;
@@ -207,8 +207,8 @@ fn emphasized_span(rest: &[char], before: Option<char>) -> Option<(&[char], usiz
     Some((&inner[..end], end + 2 * mark.len()))
 }
 
-/// Breaks characters into lines, between words if possible. The first line starts with `first`, and all other lines
-/// start with `next`.
+/// Breaks characters into lines, between words if possible. The first line starts with the prefix `first`, and all
+/// other lines start with `next`.
 fn wrap_chars(letters: Vec<(char, TextStyle)>, first: &str, next: &str, width: usize) -> Vec<ProseLine> {
     let width_of = |word: &[(char, TextStyle)]| {
         word.iter().map(|(letter, _)| letter.width().unwrap_or(0)).sum::<usize>()
@@ -220,7 +220,7 @@ fn wrap_chars(letters: Vec<(char, TextStyle)>, first: &str, next: &str, width: u
         let row = rows.last_mut().filter(|row| !row.is_empty());
         match row {
             Some(row) if width_of(row) + 1 + width_of(word) <= room => {
-                // The space between two words of the same style has this style.
+                // The space between two words of the same style also has this style.
                 let face = row.last().map(|(_, face)| *face).filter(|face| *face == word[0].1);
                 row.push((' ', face.unwrap_or(TextStyle::Text)));
                 row.extend(word);

@@ -15,7 +15,7 @@ use novamind_study::{
 /// Returns the protocol of a study as Markdown.
 ///
 /// # Errors
-/// Returns an error if the scenario of the session or the practice cannot be read.
+/// Returns an error if the scenario of the session or of the practice run cannot be read.
 pub fn protocol_markdown(study: &Study, configuration: &Configuration) -> Result<String, RunError> {
     let chapters = [
         heading_section(study),
@@ -108,7 +108,7 @@ fn participants_section(study: &Study) -> String {
     format!("## Participants\n\n{places} {plan}{conditions} Participants do not see seeds.\n")
 }
 
-/// Describes the assignment: number of labels, random draw if it can be reproduced, and digest.
+/// Describes the assignment: the number of labels, the random draw if it can be reproduced, and the digest.
 fn describe_assignment(study: &Study, assignment: &Assignment) -> String {
     let seeds = &study.protocol.seeds;
     let labels: Vec<String> = assignment.rows.iter().map(|place| place.label.clone()).collect();
@@ -289,7 +289,7 @@ fn describe_answer_format(form: &AnswerFormat) -> String {
     }
 }
 
-/// Returns the definition of every column of every table. The columns are defined where their values are computed.
+/// Returns the definition of every column of every table. The definitions come from the code that computes the values.
 fn measures_section() -> String {
     let mut text =
         "## Measures\n\nThe program computes all measures and exports `columns.csv` with the tables.\n"

@@ -9,16 +9,16 @@ use super::formatting::format_dollar_tick;
 use super::ranking_eligibility::{PUBLISHED_SEED, RankingCriteria, RankingObstacle, describe_obstacles};
 use novamind_session::{Generation, Observation};
 
-/// The published results, read from a bundled file.
+/// The published results, from a bundled file.
 #[derive(Debug, Deserialize)]
 pub struct PublishedResults {
-    /// Cash on day 0, dollars.
+    /// Cash of the published runs on day 0, dollars.
     pub start_cash: f64,
-    /// Cash of the rule-based policy, dollars.
+    /// Final cash of the published rule-based policy, dollars.
     pub rule_based_baseline: f64,
     /// Estimated cash of a perfect player, dollars.
     pub estimated_upper_bound: f64,
-    /// Share of advertising spending on the best channel if spending is random.
+    /// Share of advertising spending that goes to the best channel if spending is random.
     pub best_channel_random_share: f64,
     /// Tables of results. The first table is the paper's table.
     pub table: Vec<PublishedTable>,
@@ -29,13 +29,13 @@ pub struct PublishedResults {
 pub struct PublishedTable {
     /// Short name of the table: `paper` or `site`.
     pub name: String,
-    /// Source of the results.
+    /// Publication that contains the results.
     pub source: String,
-    /// Date of publication, or of the copy if the table changes with time.
+    /// Date on which the table was published or, for a table that changes with time, copied.
     pub date: String,
     /// Generation of the simulator that the agents played.
     pub generation: PublishedGeneration,
-    /// What is known about the generation, and on what basis.
+    /// What is known about the generation, and on what evidence.
     pub basis: String,
     /// Published results of each agent.
     pub agent: Vec<PublishedAgent>,
@@ -44,13 +44,13 @@ pub struct PublishedTable {
 /// Generation of the released simulator to which a published result belongs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 pub enum PublishedGeneration {
-    /// Release 1.
+    /// Rules of release 1.
     #[serde(rename = "release 1")]
     Release1,
-    /// Release 2.
+    /// Rules of release 2.
     #[serde(rename = "release 2")]
     Release2,
-    /// The source does not state the generation, and its date does not determine it.
+    /// The source does not state the generation, and its date is not sufficient to determine it.
     #[default]
     #[serde(rename = "not stated")]
     NotStated,
@@ -66,7 +66,7 @@ impl From<Generation> for PublishedGeneration {
 }
 
 impl PublishedGeneration {
-    /// Returns the name of the generation in texts and tables.
+    /// Returns the name that texts and tables use for the generation.
     pub fn name(self) -> &'static str {
         match self {
             PublishedGeneration::Release1 => Generation::Release1.name(),
@@ -83,23 +83,23 @@ pub struct PublishedAgent {
     pub name: String,
     /// Number of the agent's runs that ended with cash below zero.
     pub bankruptcies: u32,
-    /// Number of the agent's runs.
+    /// Number of runs that the agent played.
     pub runs: u32,
     /// Final cash of the agent's best run, dollars.
     pub best_cash: f64,
-    /// Longest survival of a run, days.
+    /// Survival of the agent's longest run, days.
     pub max_survival_days: f64,
-    /// Mean survival of a run, days.
+    /// Mean survival over the agent's runs, days.
     pub mean_survival_days: f64,
     /// Population standard deviation of survival over all runs, days.
     pub std_survival_days: f64,
-    /// Turns of the agent per week.
+    /// Number of turns that the agent takes per week.
     pub turns_per_week: f64,
-    /// Targeted share of development spending, if published.
+    /// Share of development spending that is targeted; `None` if it is not published.
     #[serde(default)]
     pub targeted_development_share: Option<f64>,
-    /// Last day of the agent's best run, or of all runs if all of them went bankrupt; `None` if not
-    /// published. The published cash is the cash of day 500.
+    /// Last day of the agent's best run or, if all runs went bankrupt, of all runs; `None` if it is not published. The
+    /// published cash is the cash of day 500.
     #[serde(default)]
     pub horizon_days: Option<u32>,
     /// Generation of the simulator that the agent played.
@@ -119,14 +119,14 @@ impl PublishedResults {
         &self.table[0]
     }
 
-    /// Returns the table whose results runs of a generation are ranked against, or `None` if no results of
-    /// the generation are published.
+    /// Returns the table that runs of a generation are compared with, or `None` if no results of the generation are
+    /// published.
     pub fn table_of(&self, generation: Generation) -> Option<&PublishedTable> {
         self.table.iter().find(|table| table.generation == generation.into())
     }
 
-    /// Returns the results that have no stated generation and that no other table contains. No run is ranked
-    /// among them.
+    /// Returns the results whose generation is not stated and that no other table contains. No run is ranked among
+    /// them.
     pub fn unranked_agents(&self) -> impl Iterator<Item = &PublishedAgent> {
         let agents = || self.table.iter().flat_map(|table| &table.agent);
         let is_unranked = |agent: &PublishedAgent| agent.generation == PublishedGeneration::NotStated;
@@ -151,7 +151,7 @@ impl PublishedResults {
 }
 
 impl PublishedTable {
-    /// Lists the different last days of the table's runs: `497 or 504`.
+    /// Lists the different last days of the runs in the table: `497 or 504`.
     pub fn describe_horizons(&self) -> String {
         let mut horizons: Vec<u32> = self.agent.iter().filter_map(|agent| agent.horizon_days).collect();
         horizons.sort_unstable();
@@ -188,22 +188,22 @@ pub fn published_results() -> &'static PublishedResults {
 /// Origin of a ranked result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ResultOrigin {
-    /// Best of three runs of a published agent.
+    /// The best of a published agent's three runs.
     Agent,
     /// The published rule-based baseline.
     Baseline,
-    /// The run that is ranked.
+    /// The run for which the ranking is computed.
     ThisRun,
 }
 
 /// A ranked result with its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RankedResult {
-    /// Name of the player or agent.
+    /// Name that the ranking shows.
     pub name: String,
-    /// Cash at the end, dollars.
+    /// Final cash, dollars.
     pub cash: f64,
-    /// Origin of the result.
+    /// Where the result comes from.
     pub origin: ResultOrigin,
     /// Last day of the run; `None` if it is not published.
     pub horizon_days: Option<u32>,
@@ -214,22 +214,21 @@ pub struct RankedResult {
 pub struct Ranking {
     /// Generation of the run and of all results.
     pub generation: Generation,
-    /// Results, best first; empty if no results of the generation are published. Includes the run's result if its score
-    /// is comparable.
+    /// Results, best first; empty if no results of the generation are published. Includes the result of the run if its
+    /// score is comparable.
     pub entries: Vec<RankedResult>,
     /// Rank of the run, counted from 1; `None` if the run is not ranked.
     pub rank: Option<usize>,
-    /// Reasons why the run is not ranked; empty if the run is ranked, or will be ranked as soon as it has a
-    /// score.
+    /// Reasons why the run is not ranked. Empty if the run is ranked, or will be ranked as soon as it has a score.
     pub obstacles: Vec<RankingObstacle>,
-    /// Seed and length of the published runs; `None` unless the run has a different seed.
+    /// States the seed and length of the published runs if the run has a different seed; otherwise `None`.
     pub caveat: Option<String>,
     /// Source of the published results; `None` if no results of the generation are published.
     pub source: Option<String>,
 }
 
 impl Ranking {
-    /// Returns the best results, and the results directly above and below the run.
+    /// Returns the `best` first results, and the `neighbors` results above and below the run.
     pub fn top_and_neighbors(&self, best: usize, neighbors: usize) -> Vec<&RankedResult> {
         let number = self.entries.iter().position(|place| place.origin == ResultOrigin::ThisRun);
         let wanted =
@@ -252,7 +251,8 @@ impl Ranking {
     }
 }
 
-/// Ranks a score among the published results of the run's generation. A published result is ranked above an equal score.
+/// Ranks a score among the published results of the run's generation. A published result with an equal score ranks
+/// higher.
 pub fn rank_score(score: Option<f64>, seen: &Observation) -> Ranking {
     let place = |name: &str, cash: f64, whose: ResultOrigin, horizon_days: Option<u32>| RankedResult {
         name: name.to_owned(),
@@ -285,21 +285,21 @@ pub fn rank_score(score: Option<f64>, seen: &Observation) -> Ranking {
     }
 }
 
-/// Compares two results, given as cash and days survived: by cash, then by survival. The published tables
-/// also select an agent's best run by this order. The cash of a bankrupt company is 0.
+/// Compares two results, given as cash and days survived: first by cash, then by survival. Published tables select an
+/// agent's best run in this order. The cash of a bankrupt company is 0.
 pub fn compare_results(one: (f64, u32), other: (f64, u32)) -> Ordering {
     one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
 }
 
-/// Returns the number of published best runs of a generation that ended with less cash, and the total number
-/// of its published best runs. Returns `None` if no results of the generation are published.
+/// Returns how many published best runs of a generation ended with less cash, and the number of all its published best
+/// runs. Returns `None` if no results of the generation are published.
 pub fn count_published_below(cash: f64, generation: Generation) -> Option<(usize, usize)> {
     let agents = &published_results().table_of(generation)?.agent;
     Some((agents.iter().filter(|agent| agent.best_cash < cash).count(), agents.len()))
 }
 
-/// Returns the lowest and the highest published targeted share of development spending of a generation, or `None` if
-/// no results of the generation are published.
+/// Returns the lowest and the highest published share of development spending that is targeted, for a generation.
+/// Returns `None` if no results of the generation are published.
 pub fn published_targeted_share_range(generation: Generation) -> Option<(f64, f64)> {
     let agents = &published_results().table_of(generation)?.agent;
     let shares = agents.iter().filter_map(|agent| agent.targeted_development_share);
@@ -403,8 +403,7 @@ mod tests {
                 assert!(!agent.source.is_empty(), "{}", agent.name);
                 assert_eq!((agent.date.len(), &agent.date[..5]), (10, "2026-"), "{}", agent.name);
                 assert_eq!(agent.generation, table.generation, "{}", agent.name);
-                // Published cash is the cash of day 500, so the runs must have ended within a week of day
-                // 500.
+                // Published cash is the cash of day 500, so these runs must have ended within a week of this day.
                 let is_known = agent.horizon_days.is_some_and(|days| [497, 504].contains(&days));
                 assert!(is_known || agent.name == "Grok 4.5", "{}", agent.name);
             }

@@ -1,5 +1,5 @@
-//! Checks whether a run can be ranked among the published results. The final page, the menu, reports and the
-//! laboratory use this check.
+//! Decides whether a run can be ranked among the published results. Used by the final page, the menu, reports and the
+//! laboratory.
 
 use super::formatting::{format_dollar_tick, format_whole};
 use super::logbook::Logbook;
@@ -9,24 +9,24 @@ use novamind_record::folder::runs::RunSummary;
 use novamind_record::mode::Mode;
 use novamind_session::{Generation, HorizonRule, Observation};
 
-/// Day whose cash is published.
+/// Day for which the cash of published runs is known.
 pub const PUBLISHED_DAYS: u32 = 500;
 
-/// Last day of most published runs. The programs of the agents play only whole weeks. The last cash of these
-/// runs counts as the cash of [`PUBLISHED_DAYS`].
+/// Last day of most published runs, because the programs of the agents play only whole weeks. The cash on this day
+/// counts as the cash of [`PUBLISHED_DAYS`].
 pub const PUBLISHED_WHOLE_WEEKS: u32 = 497;
 
 /// Seed of the published runs.
 pub const PUBLISHED_SEED: u64 = 42;
 
-/// Scenarios with the rules of a generation: the default scenario for any seed, the scenario of the published seed, and
-/// the scenario of release 2.
+/// Scenarios with unchanged rules: the default scenario for any seed, the scenario of the published seed, and the
+/// scenario of release 2.
 const COMPARABLE_SCENARIOS: [&str; 3] = [DEFAULT_SCENARIO, "reference-seed42", "release-2"];
 
 /// Properties that decide whether a run can be ranked among the published results.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankingCriteria<'a> {
-    /// Last day of the run.
+    /// Planned last day of the run.
     pub days: u32,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
@@ -34,9 +34,9 @@ pub struct RankingCriteria<'a> {
     pub horizon_rule: HorizonRule,
     /// Generation of the released simulator whose rules the run has.
     pub generation: Generation,
-    /// Name of the scenario.
+    /// Name of the scenario. Runs can be ranked only in scenarios with unchanged rules.
     pub scenario: &'a str,
-    /// Whether the parameters differ, or differed on some days, from the bundled scenario of the same name.
+    /// Whether the parameters differ from the bundled scenario of the same name, or did on some days.
     pub has_changed_parameters: bool,
     /// Whether a language model judges the posts of the player.
     pub judged_by_model: bool,
@@ -44,8 +44,8 @@ pub struct RankingCriteria<'a> {
     pub is_lesson: bool,
     /// Whether the run is a branch. The player may know how the parent run ended.
     pub is_branch: bool,
-    /// Whether a person played the run in debug mode, which shows hidden state. Policies have no access to
-    /// hidden state.
+    /// Whether a person played the run in debug mode, which shows hidden state. Policies cannot read hidden state, so
+    /// this is `false` for them.
     pub showed_hidden_state: bool,
 }
 
@@ -98,19 +98,18 @@ impl<'a> RankingCriteria<'a> {
         }
     }
 
-    /// Returns whether the run has the same last day and the same calendar of competitor events as published
-    /// runs.
+    /// Returns whether the run has the last day and the calendar of competitor events that published runs have.
     fn has_published_length(&self) -> bool {
         match self.days {
             PUBLISHED_DAYS => true,
-            // The calendar of a run that was rounded up to 497 days can be scaled by a smaller length.
+            // If a run was rounded up to 497 days, its calendar can be scaled by a smaller length.
             PUBLISHED_WHOLE_WEEKS => self.horizon_rule != HorizonRule::WholeWeeksAbove,
             _ => false,
         }
     }
 
-    /// Returns the reasons why the run cannot be ranked, or an empty list if it can be ranked. A different seed is not
-    /// an obstacle.
+    /// Returns the reasons why the run cannot be ranked; empty if it can be ranked. A different seed is not an
+    /// obstacle.
     pub fn obstacles(&self) -> Vec<RankingObstacle> {
         let mut obstacles = Vec::new();
         if self.is_lesson {
@@ -149,16 +148,13 @@ impl<'a> RankingCriteria<'a> {
 pub enum RankingObstacle {
     /// The run belongs to a lesson.
     Lesson,
-    /// No results of the run's generation are published. The value is this generation.
+    /// No results of this generation are published.
     Generation(Generation),
-    /// The length of the run differs from the length of the published runs. The value is the run's number of
-    /// days.
+    /// The run has this number of days, which is not the length of the published runs.
     Length(u32),
-    /// The starting cash of the run differs from the starting cash of the published runs. The value is in
-    /// dollars.
+    /// The run started with this cash in dollars, unlike the published runs.
     StartCash(f64),
-    /// The rules of the run's scenario differ from the rules of the published runs. The value is the
-    /// scenario's name.
+    /// The rules of the scenario with this name differ from those of the published runs.
     Scenario(String),
     /// Parameters of the scenario were changed.
     Parameters,
@@ -216,8 +212,8 @@ pub fn describe_obstacles(obstacles: &[RankingObstacle]) -> String {
     obstacles.iter().map(RankingObstacle::describe).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the number of runs with obstacles, and a text with the obstacles. The text lists the obstacles of
-/// a single run, or counts the obstacles of several runs by kind. Returns `None` if no run has an obstacle.
+/// Returns the number of runs with obstacles, and a text about the obstacles. For a single run, the text lists them.
+/// For several runs, it counts them by kind. Returns `None` if no run has an obstacle.
 pub fn describe_unranked_runs(runs: &[Vec<RankingObstacle>]) -> Option<(usize, String)> {
     let left_out: Vec<&Vec<RankingObstacle>> =
         runs.iter().filter(|obstacles| !obstacles.is_empty()).collect();
@@ -313,7 +309,7 @@ mod tests {
             let obstacles = RankingCriteria::from_observation(&seen).obstacles();
             let expected = match seen.generation {
                 Generation::Release1 => vec![],
-                // The only obstacle is that no results are published.
+                // The only obstacle is the lack of published results.
                 Generation::Release2 => vec![RankingObstacle::Generation(Generation::Release2)],
             };
             assert_eq!(obstacles, expected, "{scenario}");

@@ -1,4 +1,4 @@
-//! Text for R&D projects: the expected duration and gain of a project before its purchase, and projects that
+//! Texts for R&D projects: the expected duration and gain of a project before its purchase, and projects that will
 //! finish too late.
 
 use serde_json::Value;
@@ -26,7 +26,7 @@ fn describe_duration(spread: &ResearchSpread, earliest: u32, last_day: u32) -> S
             "half of all projects finish between day {quarter} and {three_quarters}; {by_the_end}"
         );
     }
-    // A quartile that equals the minimum duration is not reported separately.
+    // A quartile that equals the minimum duration adds no information.
     let mut parts = vec![format!(
         "{} chance of finishing on day {earliest}, the earliest",
         format_whole_percent(spread.at_earliest)
@@ -58,19 +58,20 @@ fn format_whole_percent(share: f64) -> String {
     }
 }
 
-/// Formats the mean duration of a tier's projects in whole days: `39`, or `≥30` if only a lower bound is
+/// Formats the mean duration of a tier's projects in whole days: `39`. Formats it as `≥30` if only a lower bound is
 /// known.
 pub fn format_mean_days(means: &ResearchMeans) -> String {
     format!("{}{}", if means.are_lower_bounds { "≥" } else { "" }, grouped_number(means.days, 0))
 }
 
-/// Formats the mean quality gain of a tier's projects: `+0.0402`, or `≥0.0400` if only a lower bound is
+/// Formats the mean quality gain of a tier's projects: `+0.0402`. Formats it as `≥0.0400` if only a lower bound is
 /// known.
 pub fn format_mean_gain(means: &ResearchMeans, decimals: usize) -> String {
     format!("{}{:.decimals$}", if means.are_lower_bounds { "≥" } else { "+" }, means.gain)
 }
 
-/// Returns the result of `list_research_projects` for display, with means that include the minimum duration and gain.
+/// Returns the result of `list_research_projects` for display. Replaces the means with those that take the minimum
+/// duration and gain into account.
 pub fn projects_with_means(answer: &Value, means: &[ResearchMeans]) -> Value {
     let mut shown = answer.clone();
     let tiers = shown.get_mut("tiers").and_then(Value::as_array_mut).into_iter().flatten();
@@ -81,14 +82,14 @@ pub fn projects_with_means(answer: &Value, means: &[ResearchMeans]) -> Value {
     shown
 }
 
-/// Returns a line for each project that was started since the last week and finishes after the last day.
+/// Returns a line for each project that was started since the last week and will finish after the last day.
 pub fn late_project_lines(seen: &Observation) -> Vec<String> {
     let new = seen.late_projects.iter().filter(|project| project.is_new);
     let line = |project: &LateProject| describe_late_project(&project.id, project.due_day, seen.last_day);
     new.map(line).collect()
 }
 
-/// Describes a project that finishes after the last day of the run.
+/// Describes a project that will finish after the last day of the run.
 pub fn describe_late_project(project: &str, due_day: u32, last_day: u32) -> String {
     format!("R&D project {project} finishes on day {due_day}, after the last day ({last_day})")
 }

@@ -22,10 +22,10 @@ pub struct Bankruptcy {
     pub turning_points: Vec<String>,
 }
 
-/// Data of a run report.
+/// The data that a run report is formatted from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunReport {
-    /// Current state of the run.
+    /// State of the run on its current day.
     pub observation: Observation,
     /// Version of the program that recorded the run.
     pub version: String,
@@ -41,23 +41,23 @@ pub struct RunReport {
     pub forecasts: Vec<ScoredForecast>,
     /// Data from the tables and the ledger of the run.
     pub database: DatabaseFigures,
-    /// Decisions of the player by decision period.
+    /// What the player decided, by decision period.
     pub decision_periods: Vec<DecisionPeriod>,
-    /// Notable days of the run.
+    /// Notable days of the run, sorted by day.
     pub highlights: Vec<Highlight>,
     /// Behavior measures of the run.
     pub measures: BehaviorMeasures,
     /// Analysis of the bankruptcy; `None` if the company is not bankrupt.
     pub bankruptcy: Option<Bankruptcy>,
-    /// Session rules of the run.
+    /// Session rules, which can hide results and scores.
     pub rules: SessionRules,
-    /// Parent run and first difference, if the run is a branch.
+    /// Parent run and first different decision of a branch; `None` for other runs.
     pub origin: Option<BranchOrigin>,
 }
 
 impl RunReport {
-    /// Collects the data of a run up to the current day. Must not be called on the drawing thread, because it
-    /// queries the database.
+    /// Collects the data of a run up to the current day. Queries the database, so it must not be called on the thread
+    /// that draws the screen.
     pub fn from_session(session: &Session) -> RunReport {
         let seen = session.company().observe();
         let start_cash = session.manifest().cash;

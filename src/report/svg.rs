@@ -1,4 +1,4 @@
-//! Charts as SVG, either for a page whose style sets the colors, or as a self-contained file. Every chart contains its
+//! Charts as SVG: for a page whose style sheet sets the colors, or as a self-contained file. Every chart contains its
 //! title and summary as text.
 
 use std::fmt::Write;
@@ -14,7 +14,7 @@ const RIGHT: f64 = 14.0;
 const BOTTOM: f64 = 40.0;
 const PLOT_HEIGHT: f64 = 220.0;
 const LEGEND_ROW_HEIGHT: f64 = 20.0;
-/// Approximate width of a character in the legend.
+/// Approximate width of a character in the legend, pixels.
 const LEGEND_LETTER_WIDTH: f64 = 6.6;
 
 /// Scales of the two axes of a chart.
@@ -26,18 +26,18 @@ pub struct AxisScales {
     pub y: AxisScale,
 }
 
-/// Scales of charts in reports. The horizontal axis shows whole days or weeks.
+/// Scales of charts in reports. Labels on the horizontal axis are whole days or weeks.
 const REPORT_AXES: AxisScales = AxisScales { x: AxisScale::Whole, y: AxisScale::Linear };
 
-/// A chart in a self-contained file, with the scales of its axes.
+/// A chart of a self-contained file, and the scales of its axes.
 pub struct ScaledChart {
-    /// Chart to draw.
+    /// Content, title and labels of the chart.
     pub chart: Chart,
     /// Scales of the chart's axes.
     pub axes: AxisScales,
 }
 
-/// A range of values with round steps. For a logarithmic axis, the range contains logarithms.
+/// A range of values with round steps. For a logarithmic axis, the range consists of logarithms.
 pub(super) struct Scale {
     pub(super) from: f64,
     pub(super) to: f64,
@@ -46,8 +46,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// Creates a scale over values with about `steps` steps. If `round_ends` is set, the range is widened to
-    /// round endpoints.
+    /// Creates a scale that has about `steps` steps. If `round_ends` is true, widens the range to round endpoints.
     pub(super) fn new(values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
         let (mut from, mut to) = values
             .filter(|value| value.is_finite())
@@ -90,7 +89,7 @@ impl Scale {
         (first..=last).map(|at| at as f64 * self.step).collect()
     }
 
-    /// Returns the powers of ten in the range. If the range contains few powers, also returns twice and five times each power.
+    /// Returns the powers of ten in the range. If there are few of them, also returns twice and five times each power.
     fn decade_ticks(&self) -> Vec<f64> {
         let factors: &[f64] = if self.to - self.from <= 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let decades = self.from.floor() as i32..=self.to.ceil() as i32;
@@ -103,7 +102,7 @@ impl Scale {
     }
 }
 
-/// Returns the smallest of 1, 2, 5, 10, … that is at least `min`.
+/// Returns the smallest step of the form 1, 2 or 5 times a power of ten that is at least `min`.
 fn round_step(min: f64) -> f64 {
     let magnitude = libm::pow(10.0, libm::floor(libm::log10(min)));
     let fitting = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| step * magnitude >= min * 0.999);
@@ -126,7 +125,7 @@ impl PlotLayout {
     }
 }
 
-/// Draws a chart as SVG for a page. The element IDs contain `number`, so that they are unique on the page.
+/// Draws a chart as SVG for a page. Element IDs contain `number` to be unique on the page.
 pub fn draw(chart: &Chart, number: usize) -> String {
     let (inside, height) = draw_plot(chart, REPORT_AXES);
     format!(
@@ -137,10 +136,10 @@ pub fn draw(chart: &Chart, number: usize) -> String {
     )
 }
 
-/// Style sheet of a self-contained file, with plain colors that every SVG viewer supports.
+/// Style sheet of self-contained files. It uses plain colors, which every SVG viewer supports.
 const STYLE: &str = include_str!("../../assets/chart.css");
 
-/// Draws charts one below the other in one self-contained SVG file, without external scripts or fonts.
+/// Draws charts below each other in one self-contained SVG file, without external scripts or fonts.
 pub fn standalone_svg(title: &str, parts: &[ScaledChart]) -> String {
     const HEADER_HEIGHT: f64 = 30.0;
     let (mut all, mut below) = (String::new(), 10.0);
@@ -231,7 +230,7 @@ fn y_scale(chart: &Chart, kind: AxisScale) -> Scale {
     }
     let max = values.iter().copied().fold(0.0, f64::max);
     let min = values.iter().copied().fold(f64::INFINITY, f64::min);
-    // Includes zero in the range if the smallest value is less than half of the largest value.
+    // Zero is included if the smallest value is less than half of the largest value.
     if min > 0.0 && min < 0.5 * max {
         values.push(0.0);
     }
@@ -510,7 +509,7 @@ mod tests {
         let upper = values.iter().map(|(x, _)| (*x, 100.0));
         let around: Vec<(f64, f64)> = upper.chain(values.into_iter().rev()).collect();
         assert_eq!(points(&svg, "band"), expected(&around));
-        // The ticks of both axes are evenly spaced and correctly oriented.
+        // The ticks of both axes must be evenly spaced and increase in the correct direction.
         assert!(down.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 > pair[1].1), "{down:?}");
         assert!(across.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 < pair[1].1), "{across:?}");
     }

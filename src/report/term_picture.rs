@@ -1,6 +1,5 @@
-//! Small pictures that illustrate glossary terms with figures that the player can see. If no figures of a run
-//! are available, a picture uses published parameters or an invented customer. No picture contains hidden
-//! values.
+//! Small pictures that illustrate glossary terms with figures that the player can see. If the run has no such figures,
+//! a picture uses published parameters or an invented customer. No picture contains hidden values.
 
 use super::fit::{Fit, fits};
 use super::plot::{PlotSeries, plot_report};
@@ -18,52 +17,52 @@ const MAX_BAR_WIDTH: f64 = 30.0;
 
 /// Figures of a run that the player can see.
 pub struct VisibleFigures<'a> {
-    /// Company figures of every week.
+    /// Figures of the company for every week.
     pub weeks: &'a [WeekFigures],
-    /// Figures of the groups for every week.
+    /// Figures of every group for every week.
     pub group_weeks: &'a [ByGroup<GroupWeek>],
     /// Fit of every known group.
     pub fits: &'a [Fit],
     /// Delivered quality of every known group.
     pub quality: &'a [DeliveredQuality],
-    /// Base quality, and the general bonus from development.
+    /// Base quality, and the general bonus that development has added.
     pub quality_base: (f64, f64),
-    /// Parameters that the manual documents.
+    /// Parameter values that the manual documents.
     pub numbers: &'a ParameterNumbers,
 }
 
 /// A picture that illustrates a glossary term.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermPicture {
-    /// Caption of the picture.
+    /// Sentence that explains what the picture shows.
     pub caption: String,
-    /// Drawing of the picture; `None` if the run has no figures to draw yet.
+    /// The drawing; `None` if the run has no figures for it yet.
     pub drawing: Option<TermDrawing>,
 }
 
 /// Drawing of a picture as lines or bars.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TermDrawing {
-    /// Lines in a chart with axes.
+    /// Lines, points and a band in a chart with axes.
     Lines(TermLines),
     /// Bars with a name and an amount.
     Bars(Vec<(String, f64)>),
 }
 
-/// Lines in a chart with axes.
+/// Lines, points and a band in a chart with axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermLines {
-    /// Name and points of each line. The name can be empty.
+    /// Name and points of each line; the name can be empty.
     pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
-    /// Shaded interval, as position, lower endpoint and upper endpoint.
+    /// Shaded interval: horizontal position, lower endpoint and upper endpoint of each point.
     pub band: Vec<(f64, f64, f64)>,
-    /// Plans that are drawn as points, with their positions.
+    /// Plans that are drawn as points, with their horizontal and vertical positions.
     pub plans: Vec<(Plan, f64, f64)>,
     /// Unit of the horizontal axis.
     pub x_axis: TermXAxis,
 }
 
-/// Unit of the horizontal axis.
+/// What the horizontal axis counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TermXAxis {
     /// Amounts in dollars.
@@ -112,7 +111,7 @@ fn participation_curve() -> TermPicture {
     }
 }
 
-/// Compares the plans with the estimates of the group of individuals whose estimates are most precise.
+/// Compares the plans with the estimates of that group of individuals whose estimates are the most precise.
 fn estimates_and_plans(fits: &[Fit]) -> TermPicture {
     let individuals = fits.iter().filter(|fit| !fit.group.is_enterprise());
     let Some(fit) =
@@ -139,7 +138,7 @@ fn estimates_and_plans(fits: &[Fit]) -> TermPicture {
     }
 }
 
-/// Draws the share of a cohort that remains after each week if churn stays at last week's value.
+/// Draws the share of a cohort that remains after each week if the churn of the last week continues.
 fn cohort_retention(weeks: &[WeekFigures]) -> TermPicture {
     let Some(churn) = last_week_churn(weeks) else {
         let caption = "Churn is unknown until a week that started with subscribers has run.".to_owned();
@@ -155,7 +154,8 @@ fn cohort_retention(weeks: &[WeekFigures]) -> TermPicture {
     }
 }
 
-/// Draws how much of a reputation change reaches another group, by the influence of one group on the other.
+/// Draws how much of a reputation change reaches another group, depending on the influence of the first group on the
+/// other.
 fn spillover(numbers: &ParameterNumbers) -> TermPicture {
     let value = |key| numbers.value(key);
     let both = value("reputation.cross_group_spillover_factor").zip(value("reputation.cross_delta_min_abs"));
@@ -163,8 +163,8 @@ fn spillover(numbers: &ParameterNumbers) -> TermPicture {
         return TermPicture { caption: String::new(), drawing: None };
     };
     let reaching = |influence: f64| {
-        let spilt = EXAMPLE_REPUTATION_CHANGE * influence * factor;
-        (influence, if spilt < least { 0.0 } else { spilt })
+        let transferred = EXAMPLE_REPUTATION_CHANGE * influence * factor;
+        (influence, if transferred < least { 0.0 } else { transferred })
     };
     let points = (0..=100).map(|step| reaching(f64::from(step) / 100.0)).collect();
     TermPicture {
@@ -175,8 +175,8 @@ fn spillover(numbers: &ParameterNumbers) -> TermPicture {
     }
 }
 
-/// Draws the base quality and the added quality. The share that competitors have copied is not drawn, because
-/// it is hidden.
+/// Draws the base quality and the added quality. Does not draw the share that competitors have copied, because it is
+/// hidden.
 fn quality_bank(seen: &VisibleFigures<'_>) -> TermPicture {
     let (base, shared) = seen.quality_base;
     let name_and_bonus = |delivered_quality: &DeliveredQuality| {
@@ -191,7 +191,7 @@ fn quality_bank(seen: &VisibleFigures<'_>) -> TermPicture {
     }
 }
 
-/// Draws the leads of all groups by week: leads by word of mouth and leads through channels.
+/// Draws the leads of all groups by week, separately for word of mouth and channels.
 fn word_of_mouth(weeks: &[ByGroup<GroupWeek>]) -> TermPicture {
     if weeks.is_empty() {
         return TermPicture {
@@ -339,7 +339,7 @@ mod tests {
         let numbers = ParameterNumbers::bundled();
         let value = |key: &str| numbers.value(key).expect("a number");
         let least = value("reputation.cross_delta_min_abs");
-        assert!(points.iter().all(|(_, spilt)| *spilt == 0.0 || *spilt >= least));
+        assert!(points.iter().all(|(_, transferred)| *transferred == 0.0 || *transferred >= least));
         let most = EXAMPLE_REPUTATION_CHANGE * value("reputation.cross_group_spillover_factor");
         assert!((points[100].1 - most).abs() < 1e-12);
     }

@@ -7,8 +7,8 @@ use novamind_record::trajectory::record::Via;
 use novamind_record::trajectory::{Line, Trajectory};
 use novamind_session::{NewRun, Session, Storage};
 
-/// Plays a run in memory for the given number of weeks, with reasonable opening decisions and one change in
-/// the third week.
+/// Plays a run in memory for the given number of weeks, with reasonable opening decisions and one change in the third
+/// week.
 pub fn play_weeks(weeks: usize) -> Session {
     play_run(200, 1_000_000.0, weeks, &opening_calls())
 }
@@ -86,7 +86,7 @@ fn play_run(days: u32, cash: f64, weeks: usize, calls: &[(&str, Value)]) -> Sess
     session
 }
 
-/// Records a short run on disk with a variety of events, and returns it with its lines.
+/// Records a short run with a variety of events on disk, and returns its session and its lines.
 pub fn recorded_run() -> (Session, Vec<Line>) {
     let runs = tempfile::tempdir().expect("a folder");
     let new = NewRun {

@@ -1,5 +1,5 @@
-//! Weekly report: the cash change with its components, the most unusual changes in figures, decisions before the week,
-//! news, and the outcome of due forecasts.
+//! Weekly report: the cash change and its components, the most unusual changes in figures, decisions before the week,
+//! news, and the outcomes of due forecasts.
 
 use std::ops::Range;
 
@@ -17,29 +17,29 @@ use novamind_session::{
 
 /// A figure that changed over the week.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MovedFigure {
-    /// Name of the figure that changed.
+pub struct ChangedFigure {
+    /// Name of the figure, as reports show it.
     pub name: &'static str,
-    /// Formatted value of the previous week.
+    /// Value of the previous week, as text with its unit.
     pub old: String,
-    /// Formatted value of the week.
+    /// Value of the reported week, as text with its unit.
     pub new: String,
     /// Whether the figure rose.
     pub is_increase: bool,
-    /// Whether the change is favorable for the company; `None` if a rise can be good or bad for the company.
+    /// Whether the change is favorable for the company; `None` if a rise can be either good or bad.
     pub is_favorable: Option<bool>,
     /// Whether the figure is a share from 0 to 1.
     pub is_share: bool,
     /// Comparison with the changes of earlier weeks.
     pub change: FigureChange,
-    /// Changes by ledger category that add up to the change of the figure, largest first. Empty if the figure is not
-    /// from the ledger.
+    /// Changes by ledger category that add up to the change of the figure, largest first; empty if the figure does not
+    /// come from the ledger.
     pub category_changes: Vec<(&'static str, f64)>,
 }
 
-impl MovedFigure {
-    /// Formats the size of the change: in percentage points for shares, otherwise in percent of the previous
-    /// value. Returns `None` if the previous value was 0.
+impl ChangedFigure {
+    /// Formats the size of the change: for shares in percentage points, otherwise in percent of the previous value.
+    /// Returns `None` if the previous value was 0.
     pub fn format_size(&self) -> Option<String> {
         let (old, new) = (self.change.old, self.change.new);
         if self.is_share {
@@ -60,23 +60,23 @@ impl MovedFigure {
 pub struct WeekReport {
     /// Figures of the reported week.
     pub week: WeekFigures,
-    /// Lengths of this week and the previous week; `None` if the lengths are equal. The last week of a run
-    /// can be short.
+    /// Describes the lengths of this week and the previous week; `None` if they are equal. The last week of a run can
+    /// be short.
     pub short_week_note: Option<String>,
     /// Amounts by ledger category that add up to the cash change: income first, then costs from the largest.
     pub cash_components: Vec<(&'static str, f64)>,
     /// Changed figures, starting with the most unusual change.
-    pub moved_figures: Vec<MovedFigure>,
-    /// Descriptions of changed settings with old and new values, the largest amounts of money first, then of purchases,
-    /// posts and offers.
+    pub changed_figures: Vec<ChangedFigure>,
+    /// Descriptions of changed settings, with old and new values and the largest amounts of money first; then
+    /// descriptions of purchases, posts and offers.
     pub decisions: Vec<String>,
     /// Forecasts for the last day of the week, shortest horizon first.
     pub due_forecasts: Vec<ScoredForecast>,
-    /// Number of customers' posts.
+    /// Number of customers' posts in the week.
     pub customer_posts: u32,
     /// Number of comments on the company's posts.
     pub comments: u32,
-    /// Number of news items.
+    /// Number of news items in the week.
     pub news_items: u32,
     /// Decision days of the weeks that were filed automatically because a time limit was reached.
     limit_days: Vec<u32>,
@@ -85,7 +85,7 @@ pub struct WeekReport {
 /// A figure of the report: name, function that reads the value, unit, whether higher is better, and ledger categories.
 struct FigureRow(&'static str, fn(&WeekFigures) -> f64, WeekFigureUnit, Option<bool>, &'static [Category]);
 
-/// Unit of a figure, which determines its format and random variation.
+/// Unit of a figure, which determines its format and its random variation.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum WeekFigureUnit {
     Dollars,
@@ -111,7 +111,7 @@ impl WeekFigureUnit {
         matches!(self, WeekFigureUnit::ShareOfLeads | WeekFigureUnit::Share)
     }
 
-    /// Returns the random variation of a weekly value. For amounts in dollars, returns an amount that is insignificant
+    /// Returns the random variation of a weekly value. For dollars, returns the largest amount that is insignificant
     /// for the company.
     fn noise(self, value: f64, week: &WeekFigures) -> f64 {
         match self {
@@ -192,7 +192,7 @@ const FIGURES: [FigureRow; 14] = [
     FigureRow("open issues", |week| f64::from(week.open_issues), WeekFigureUnit::Count, Some(false), &[]),
 ];
 
-/// Data from which a weekly report is computed.
+/// What a weekly report is computed from.
 pub struct WeekReportInput<'a> {
     /// Figures of every simulated week.
     pub weeks: &'a [WeekFigures],
@@ -200,8 +200,7 @@ pub struct WeekReportInput<'a> {
     pub decisions: &'a [Decisions],
     /// Journal with all actions of the run.
     pub journal: &'a [JournalEntry],
-    /// Publication days of customers' posts, of comments on the company's posts, and of news items, in this
-    /// order.
+    /// Publication days of customers' posts, of comments on the company's posts, and of news items, in this order.
     pub posts: [&'a [u32]; 3],
 }
 
@@ -211,8 +210,8 @@ impl WeekReport {
         let has_authors = session.params().fidelity.interface == Interface::Release1;
         let mut posts: [Vec<u32>; 3] = Default::default();
         for post in session.company().posts() {
-            // News items have no customer group. In release 2, the authors of posts are not published, so
-            // customers' posts and news items are counted together.
+            // News items have no customer group. Release 2 does not publish the authors of posts, so customers' posts
+            // and news items are counted together.
             let kind = match (post.own_post, &post.written_by) {
                 (Some(_), _) => 1,
                 (None, None) if has_authors => 2,
@@ -239,7 +238,7 @@ impl WeekReport {
             week,
             short_week_note: describe_unequal_weeks(sources.weeks),
             cash_components: cash_components(&week.booked),
-            moved_figures: moved_figures(sources, &week),
+            changed_figures: changed_figures(sources, &week),
             decisions: describe_decisions(sources, first_day - 1..week.day),
             due_forecasts: due_forecasts(sources, week.day),
             customer_posts,
@@ -254,20 +253,20 @@ impl WeekReport {
         self.limit_days.contains(&(self.week.day - self.week.days_run.min(self.week.day)))
     }
 
-    /// Returns whether this forecast was filed automatically because a time limit was reached.
+    /// Returns whether a forecast was filed automatically because a time limit was reached.
     pub fn was_forecast_filed_at_limit(&self, forecast: &ScoredForecast) -> bool {
         self.limit_days.contains(&forecast.day)
     }
 }
 
-/// Describes the lengths of the last two weeks if the lengths differ.
+/// Describes the lengths of the last two weeks; `None` if they are equal.
 fn describe_unequal_weeks(weeks: &[WeekFigures]) -> Option<String> {
     let [.., before, week_figures] = weeks else { return None };
     describe_short_week(week_figures.days_run, before.days_run)
 }
 
-/// Returns the decision day of a week that was filed automatically at a time limit, or `None` if the journal
-/// entry is a different one.
+/// Returns the decision day of a week that was filed automatically at a time limit, or `None` if the journal entry is
+/// not about such a week.
 fn day_filed_at_limit(entry: &JournalEntry) -> Option<u32> {
     match entry {
         JournalEntry::Advance { day, rationale, filled_naively: [true, true, true, true], .. }
@@ -289,8 +288,8 @@ fn cash_components(booked: &CategoryTotals) -> Vec<(&'static str, f64)> {
     parts
 }
 
-/// Describes the decisions of a range of days: the decisions before a week, and the decisions between its
-/// days if the days were run one by one.
+/// Describes the decisions in a range of days: those before a week and, if its days were run one by one, those between
+/// the days.
 fn describe_decisions(sources: &WeekReportInput<'_>, days: Range<u32>) -> Vec<String> {
     let found = sources.decisions.iter().filter(|decided| days.contains(&decided.day));
     found
@@ -301,7 +300,7 @@ fn describe_decisions(sources: &WeekReportInput<'_>, days: Range<u32>) -> Vec<St
         .collect()
 }
 
-fn moved_figures(sources: &WeekReportInput<'_>, week: &WeekFigures) -> Vec<MovedFigure> {
+fn changed_figures(sources: &WeekReportInput<'_>, week: &WeekFigures) -> Vec<ChangedFigure> {
     let nothing = WeekFigures::default();
     let before = sources.weeks.len().checked_sub(2).map_or(&nothing, |at| &sources.weeks[at]);
     let moved = |FigureRow(name, read, unit, more_is_better, categories): &FigureRow| {
@@ -311,9 +310,10 @@ fn moved_figures(sources: &WeekReportInput<'_>, week: &WeekFigures) -> Vec<Moved
         let movement = last_change(&series, noise)?;
         let up = movement.new > movement.old;
         let (old, new) = (unit.format(movement.old), unit.format(movement.new));
-        // A figure counts as unchanged if its displayed value is unchanged, or if it changed by less than one thousandth.
+        // A figure counts as unchanged if its displayed value is the same, or if it changed by less than one
+        // thousandth.
         let moved = old != new && movement.relative_size() >= 0.001;
-        moved.then(|| MovedFigure {
+        moved.then(|| ChangedFigure {
             name,
             old,
             new,
@@ -324,7 +324,7 @@ fn moved_figures(sources: &WeekReportInput<'_>, week: &WeekFigures) -> Vec<Moved
             category_changes: category_changes(categories, &before.booked, &week.booked),
         })
     };
-    let mut moves: Vec<MovedFigure> = FIGURES.iter().filter_map(moved).collect();
+    let mut moves: Vec<ChangedFigure> = FIGURES.iter().filter_map(moved).collect();
     moves.sort_by(|left, right| right.change.unusualness.total_cmp(&left.change.unusualness));
     moves
 }
@@ -400,7 +400,7 @@ mod tests {
             }
         }
         let costs =
-            report.moved_figures.iter().find(|moved| moved.name == "running costs").expect("they changed");
+            report.changed_figures.iter().find(|moved| moved.name == "running costs").expect("they changed");
         let split: f64 = costs.category_changes.iter().map(|(_, dollars)| dollars).sum();
         assert!((split - (costs.change.new - costs.change.old)).abs() < 0.01);
     }
@@ -413,10 +413,10 @@ mod tests {
         assert_eq!(horizons, [7, 28]);
         assert!(report.due_forecasts.iter().all(|due| due.outcome == Some(report.week.cash)
             && due.relative_error().is_some_and(|error| error.abs() < 1.0)));
-        assert!(report.moved_figures.len() > 4);
-        let order: Vec<f64> = report.moved_figures.iter().map(|moved| moved.change.unusualness).collect();
+        assert!(report.changed_figures.len() > 4);
+        let order: Vec<f64> = report.changed_figures.iter().map(|moved| moved.change.unusualness).collect();
         assert!(order.is_sorted_by(|left, right| left >= right), "{order:?}");
-        assert!(report.moved_figures.iter().all(|moved| moved.old != moved.new));
+        assert!(report.changed_figures.iter().all(|moved| moved.old != moved.new));
         assert!(report.decisions.is_empty(), "no setting changed before week 5: {:?}", report.decisions);
     }
 
@@ -425,7 +425,7 @@ mod tests {
         assert_eq!(WeekReport::from_session(&test_kit::play_weeks(0)), None);
         let report = WeekReport::from_session(&test_kit::play_weeks(1)).expect("a week");
         let costs =
-            report.moved_figures.iter().find(|moved| moved.name == "running costs").expect("they rose");
+            report.changed_figures.iter().find(|moved| moved.name == "running costs").expect("they rose");
         assert_eq!((costs.old.as_str(), costs.is_increase, costs.is_favorable), ("$0", true, Some(false)));
         assert_eq!(costs.format_size(), None);
         assert!(report.decisions.contains(&"price A: 0 → 12 $/month".to_owned()), "{:?}", report.decisions);
@@ -448,13 +448,13 @@ mod tests {
         let week = WeekFigures { cancellations: 0, payments: 9_800.0, ..before };
         for more in [0, 5] {
             let report = two_weeks(before, week, more);
-            let names: Vec<&str> = report.moved_figures.iter().map(|moved| moved.name).collect();
+            let names: Vec<&str> = report.changed_figures.iter().map(|moved| moved.name).collect();
             assert_eq!(names, ["payments", "cancellations"], "after {more} weeks");
-            assert_eq!(report.moved_figures[1].change.describe_rarity(), "", "after {more} weeks");
+            assert_eq!(report.changed_figures[1].change.describe_rarity(), "", "after {more} weeks");
         }
         // Many cancellations rank above a minor change in payments.
         let wave = WeekFigures { cancellations: 90, payments: 4_100.0, ..before };
-        assert_eq!(two_weeks(before, wave, 5).moved_figures[0].name, "cancellations");
+        assert_eq!(two_weeks(before, wave, 5).changed_figures[0].name, "cancellations");
     }
 
     #[test]
@@ -467,7 +467,11 @@ mod tests {
         let week = WeekFigures { new_individual_subscribers: 424, ..before };
         let report = two_weeks(before, week, 0);
         let size = |name: &str| {
-            report.moved_figures.iter().find(|moved| moved.name == name).and_then(MovedFigure::format_size)
+            report
+                .changed_figures
+                .iter()
+                .find(|moved| moved.name == name)
+                .and_then(ChangedFigure::format_size)
         };
         assert_eq!(size("conversion").as_deref(), Some("9.3 pt"));
         assert_eq!(size("new subscribers").as_deref(), Some("18%"));

@@ -1,4 +1,4 @@
-//! Text and tables for what-if comparisons.
+//! Texts and tables for what-if comparisons.
 
 use serde_json::Value;
 
@@ -15,11 +15,10 @@ use novamind_record::figures::FigureUnit;
 use novamind_session::EnterpriseNames;
 use novamind_tools::{ToolId, ToolKind, find};
 
-// Name of the branch that has no edits. Its simulation can continue beyond the end of the record, with
-// unchanged settings.
+// Name of the branch without edits. Its simulation can continue beyond the end of the record, with unchanged settings.
 const UNCHANGED_BRANCH_NAME: &str = "your decisions unchanged";
 
-/// Returns the name of a branch, which lists its edits.
+/// Returns the name of a branch: a list of its edits.
 pub fn branch_name(edits: &[DecisionEdit]) -> String {
     match edits {
         [] => UNCHANGED_BRANCH_NAME.to_owned(),
@@ -27,12 +26,12 @@ pub fn branch_name(edits: &[DecisionEdit]) -> String {
     }
 }
 
-/// How decisions are named in text.
+/// How texts name decisions.
 #[derive(Clone, Copy)]
 pub enum DecisionNotation<'a> {
-    /// As tool calls with their line numbers, as in the edits of plain mode.
+    /// As tool calls with line numbers, like the edits of plain mode.
     Calls,
-    /// As names and values in words.
+    /// In words, as names and values.
     Words(&'a EnterpriseNames),
 }
 
@@ -82,14 +81,14 @@ pub fn period(comparison: &BranchComparison, days_per_week: u32) -> String {
     format!("re-simulation of weeks {first} to {last} (days {} to {until}), same random draws", from + 1)
 }
 
-/// Describes the compared period, and the weeks that were not played.
+/// Describes the compared period, and which of its weeks were not played.
 pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
     let note =
         unplayed_weeks_line(comparison, days_per_week).map_or(String::new(), |line| format!("; {line}"));
     format!("{}{note}", period(comparison, days_per_week))
 }
 
-/// Describes the simulated weeks that the run has not completed, if there are any.
+/// Describes the simulated weeks that the run has not completed. Returns `None` if there are none.
 pub fn unplayed_weeks_line(comparison: &BranchComparison, days_per_week: u32) -> Option<String> {
     let weeks = unplayed_weeks(comparison, days_per_week)?;
     Some(format!("{weeks}: no further decisions, settings unchanged"))
@@ -105,8 +104,8 @@ fn unplayed_weeks(comparison: &BranchComparison, days_per_week: u32) -> Option<S
     })
 }
 
-/// Describes a branch by its number, its name and the first day on which it differs from the unchanged run.
-/// For the unchanged run, the line names the weeks that were not played instead of a day.
+/// Describes a branch: its number, its name, and the first day on which it differs from the unchanged run. For the
+/// unchanged run, names the weeks that were not played instead of a day.
 pub fn branch_line(comparison: &BranchComparison, number: usize, name: &str, days_per_week: u32) -> String {
     let Some(branch) = comparison.branches.get(number) else { return String::new() };
     let since = match (branch.first_different_day, branch.edits.is_empty()) {
@@ -119,7 +118,8 @@ pub fn branch_line(comparison: &BranchComparison, number: usize, name: &str, day
     format!("{number}  {name}{since}")
 }
 
-/// Lists the changed decisions of a branch, decisions that are now rejected, and rejected decisions that would now be accepted.
+/// Lists the changed decisions of a branch, the decisions that are now rejected, and the rejected decisions that would
+/// now be accepted.
 pub fn describe_decisions(
     branch: &BranchFigures,
     days_per_week: u32,
@@ -183,7 +183,8 @@ fn group_equal_differences(differences: &[CallDifference]) -> Vec<Vec<&CallDiffe
     all
 }
 
-/// Describes calls that differ from the recorded calls in the same way: `weeks 20 to 72: set_prices {…} → {…} (53 calls)`.
+/// Describes calls that all differ from the recorded calls by the same change: `weeks 20 to 72: set_prices {…} → {…}
+/// (53 calls)`.
 fn describe_call_differences(
     calls: &[&CallDifference],
     week: impl Fn(u32) -> u32,
@@ -218,14 +219,14 @@ fn describe_call_difference(call: &CallDifference, notation: DecisionNotation<'_
     }
 }
 
-/// Returns the number of the week after which figures are shown. Marks the week if the record ends before the
-/// end of this week.
+/// Returns the label of the week whose final figures are shown. Marks the week if the record ends before the end of the
+/// week.
 pub fn milestone_label(comparison: &BranchComparison, day: u32, days_per_week: u32) -> String {
     let mark = if day > comparison.recorded_until { " not played" } else { "" };
     format!("{}{mark}", day.div_ceil(days_per_week))
 }
 
-/// Returns the headers and rows of the comparison. Each row has one figure at one milestone, with a column for each
+/// Returns the headers and rows of the comparison. Each row has one figure at one milestone, with one column per
 /// branch. Cells show the difference from the unchanged run.
 pub fn comparison_table(
     comparison: &BranchComparison,
@@ -287,7 +288,7 @@ pub fn comparison_cell_lines(
     [format_figure(figure.unit(), value), more]
 }
 
-/// Describes the number of futures, and the day after which their random draws differ from the run's.
+/// Describes how many futures were simulated, and after which day their random draws differ from those of the run.
 pub fn futures_heading(futures: &Futures) -> String {
     format!(
         "{} with new random draws after day {}; median, and in brackets the 10th to 90th percentile",
@@ -296,8 +297,8 @@ pub fn futures_heading(futures: &Futures) -> String {
     )
 }
 
-/// Describes the number of futures of a branch that end in bankruptcy, and how the figures of these futures
-/// are counted. Returns `None` if no future ends in bankruptcy.
+/// Describes how many futures of a branch end in bankruptcy, and how these futures are counted. Returns `None` if no
+/// future does.
 pub fn describe_bankruptcies(futures: &Futures, branch: usize) -> Option<String> {
     let ended = futures.bankruptcy_count(branch);
     (ended > 0).then(|| {
@@ -308,7 +309,7 @@ pub fn describe_bankruptcies(futures: &Futures, branch: usize) -> Option<String>
     })
 }
 
-/// Returns the headers and rows of the futures. Each row has one figure at one milestone, with a column for each branch.
+/// Returns the headers and rows of the futures. Each row has one figure at one milestone, with one column per branch.
 pub fn futures_table(
     comparison: &BranchComparison,
     futures: &Futures,
@@ -335,8 +336,8 @@ pub fn futures_cell_lines(futures: &Futures, branch: usize, figure: BranchFigure
     [format_figure(figure.unit(), band.median), format!("{}–{}", short(band.low), short(band.high))]
 }
 
-/// Describes the mean difference of a figure between a branch and the unchanged run on the last day, with its
-/// interval. Returns `None` if no future has a value.
+/// Describes the mean difference between a branch and the unchanged run in a figure on the last day, with its interval.
+/// Returns `None` if no future has a value.
 pub fn difference_line(
     comparison: &BranchComparison,
     futures: &Futures,

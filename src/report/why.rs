@@ -1,4 +1,4 @@
-//! Text for the explanation of a change by its causes.
+//! Texts that explain a change by its causes.
 
 use super::decision_periods::describe_change;
 use super::formatting::{
@@ -11,16 +11,16 @@ use novamind_record::figures::FigureUnit;
 /// Name of the part of a change that no cause explains.
 pub const RESIDUAL_NAME: &str = "residual";
 
-/// A cause with its contribution to the change, or the residual.
+/// A cause or the residual, with its contribution to the change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CauseLine {
     /// Name of the cause, or [`RESIDUAL_NAME`].
     pub name: &'static str,
     /// Contribution of the cause to the change, in the unit of the figure.
     pub amount: f64,
-    /// Formatted contribution with its sign.
+    /// Contribution as text, with its sign and unit.
     pub amount_text: String,
-    /// Inputs of the cause that differ between the two weeks, with old and new values.
+    /// Inputs of the cause that differ between the two weeks, with their old and new values.
     pub details: Vec<String>,
 }
 
@@ -50,7 +50,7 @@ pub fn equation(why: &ChangeExplanation) -> String {
     )
 }
 
-/// Formats the figure of both weeks, and the lengths of the weeks if they differ: `week 20: 195 → 1,137`.
+/// Formats the figure of both weeks: `week 20: 195 → 1,137`. Adds the lengths of the weeks if they differ.
 pub fn heading(why: &ChangeExplanation) -> String {
     let value = |value| format_figure(why.quantity.unit(), value);
     let [before, number] = why.days;

@@ -10,7 +10,7 @@ use novamind_session::identifiers::Plan;
 use novamind_session::{EnterpriseNames, Session};
 use novamind_tools::{Rejection, ToolId};
 
-/// The reply of a rule to a thread.
+/// The reply that a rule sends to a thread.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RuleReply {
     /// An offer of plans with their prices.
@@ -22,7 +22,7 @@ pub enum RuleReply {
 /// A thread with the matching rule and its reply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RuleOutcome {
-    /// Fields of the waiting thread.
+    /// Fields of the waiting thread that rules compare.
     pub thread: ThreadContext,
     /// Index of the matching rule; `None` if no rule matches.
     pub rule_index: Option<usize>,
@@ -41,10 +41,10 @@ pub struct RuleBatch {
     pub totals: Vec<OfferTotals>,
 }
 
-/// Returns the tool calls that send the replies of rules to all waiting enterprises.
+/// Applies the rules in `text` to all waiting threads and returns the tool calls that send the replies.
 ///
 /// # Errors
-/// Returns `rules_not_readable`, or the error of a failed database query.
+/// Returns `rules_not_readable` if the rules have a syntax error, or the error of a failed database query.
 pub fn calls_for_waiting_threads(
     text: &str,
     session: &mut Session,
@@ -61,28 +61,28 @@ impl RuleBatch {
         let threads: Vec<RuleOutcome> =
             threads.into_iter().map(|thread| apply_rules(&rules, thread, market)).collect();
         let mut sums = vec![OfferTotals::default(); rules.len() + 1];
-        for ruled in &threads {
-            add_outcome(&mut sums[ruled.rule_index.unwrap_or(rules.len())], ruled, market);
+        for outcome in &threads {
+            add_outcome(&mut sums[outcome.rule_index.unwrap_or(rules.len())], outcome, market);
         }
         RuleBatch { rules, threads, totals: sums }
     }
 
     /// Returns the tool calls that send the offers and then the rejections. The list is empty if no reply is sent.
     pub fn tool_calls(&self) -> Vec<(ToolId, Value)> {
-        let (mut offers, mut ends) = (Vec::new(), Vec::new());
-        for ruled in &self.threads {
-            let customer = ruled.thread.waiting.customer;
-            match &ruled.reply {
+        let (mut offers, mut rejections) = (Vec::new(), Vec::new());
+        for outcome in &self.threads {
+            let customer = outcome.thread.waiting.customer;
+            match &outcome.reply {
                 Ok(RuleReply::Offer(lines)) => {
                     let lines: Vec<Value> =
                         lines.iter().map(|(plan, price)| json!([plan.id(), price])).collect();
                     offers.push(json!([customer, lines]));
                 }
-                Ok(RuleReply::Rejection) => ends.push(json!({ "customer_id": customer })),
+                Ok(RuleReply::Rejection) => rejections.push(json!({ "customer_id": customer })),
                 Err(_) => {}
             }
         }
-        let calls = RULE_TOOLS.into_iter().zip([offers, ends]);
+        let calls = RULE_TOOLS.into_iter().zip([offers, rejections]);
         let calls = calls.filter(|(_, deals)| !deals.is_empty());
         calls.map(|(tool, deals)| (tool, json!({ "deals": deals }))).collect()
     }
@@ -118,9 +118,9 @@ impl RuleBatch {
     }
 }
 
-fn add_outcome(totals: &mut OfferTotals, ruled: &RuleOutcome, market: &PlanEconomics) {
-    let waiting = &ruled.thread.waiting;
-    match &ruled.reply {
+fn add_outcome(totals: &mut OfferTotals, outcome: &RuleOutcome, market: &PlanEconomics) {
+    let waiting = &outcome.thread.waiting;
+    match &outcome.reply {
         Ok(RuleReply::Offer(lines)) => {
             let line = |line: &(Plan, f64)| market.offer_line(waiting.group, waiting.seats, *line);
             totals.add_offer(&lines.iter().map(line).collect::<Vec<_>>(), waiting.seats);
@@ -257,7 +257,7 @@ mod tests {
 
     fn described_outcomes(rules: &str) -> Vec<(Option<usize>, String)> {
         let batch = RuleBatch::new(parse(rules).expect("rules"), threads(), &market());
-        batch.threads.iter().map(|ruled| (ruled.rule_index, ruled.describe_reply())).collect()
+        batch.threads.iter().map(|outcome| (outcome.rule_index, outcome.describe_reply())).collect()
     }
 
     #[test]
@@ -311,8 +311,8 @@ mod tests {
         ] {
             let rules = parse(&format!("reject where {condition}")).expect(condition);
             let batch = RuleBatch::new(rules, threads(), &market());
-            let ruled = batch.threads.iter().filter(|ruled| ruled.rule_index.is_some());
-            let found: Vec<u32> = ruled.map(|ruled| ruled.thread.waiting.customer).collect();
+            let outcome = batch.threads.iter().filter(|outcome| outcome.rule_index.is_some());
+            let found: Vec<u32> = outcome.map(|outcome| outcome.thread.waiting.customer).collect();
             assert_eq!(found, expected_customers, "{condition}");
         }
     }

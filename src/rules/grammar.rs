@@ -35,7 +35,7 @@ pub(super) enum Action {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OfferLine {
-    /// Offered plan. `None` stands for the plan that the enterprise asked for.
+    /// Offered plan; `None` if the line offers the plan that the enterprise asked for.
     pub(super) plan: Option<Plan>,
     pub(super) price: Price,
 }
@@ -82,7 +82,7 @@ pub fn parse(text: &str) -> Result<Vec<Rule>, RuleError> {
     }
 }
 
-/// Parses conditions without a rule, in the form that follows `where`.
+/// Parses conditions that are not part of a rule, in the form that follows `where` in a rule.
 pub(super) fn parse_conditions(text: &str) -> Result<Vec<Condition>, RuleError> {
     let tokens = tokenize(text)?;
     let mut reader = RuleParser { text, tokens: &tokens, at: 0 };
@@ -122,8 +122,8 @@ fn tokenize(text: &str) -> Result<Vec<Token>, RuleError> {
             '"' | '\'' => match rest[1..].find(letter) {
                 Some(end) => end + 2,
                 None => {
-                    let text_of = "the quotation mark is not closed".to_owned();
-                    return Err(RuleError { text: text_of, column: column(text, at) });
+                    let message = "the quotation mark is not closed".to_owned();
+                    return Err(RuleError { text: message, column: column(text, at) });
                 }
             },
             _ if is_word(letter) => rest.find(|next| !is_word(next)).unwrap_or(rest.len()),
@@ -133,8 +133,8 @@ fn tokenize(text: &str) -> Result<Vec<Token>, RuleError> {
                     Some(two) => two.len(),
                     None if "<>=:,*()-".contains(letter) => 1,
                     None => {
-                        let text_of = format!("unexpected character {letter}");
-                        return Err(RuleError { text: text_of, column: column(text, at) });
+                        let message = format!("unexpected character {letter}");
+                        return Err(RuleError { text: message, column: column(text, at) });
                     }
                 }
             }
@@ -179,7 +179,7 @@ impl RuleParser<'_> {
         RuleError { text: text.into(), column: column(self.text, at) }
     }
 
-    /// Returns an error at the previous word.
+    /// Steps back by one token and returns an error there.
     fn error_at_previous(&mut self, text: impl Into<String>) -> RuleError {
         self.at -= 1;
         self.error_at_current_token(text)
@@ -272,12 +272,12 @@ impl RuleParser<'_> {
         Ok(Condition::Compared(field, comparison, value))
     }
 
-    /// Rejects `1,000`, because the comma would separate two numbers.
+    /// Rejects a number such as `1,000`, whose comma would be read as a separator.
     fn reject_comma_in_number(&mut self) -> Result<(), RuleError> {
         let [number, comma, more, ..] = &self.tokens[self.at.saturating_sub(1)..] else { return Ok(()) };
-        let digits = |token: &Token| token.text.chars().all(|letter| letter.is_ascii_digit());
+        let is_digits = |token: &Token| token.text.chars().all(|letter| letter.is_ascii_digit());
         let adjacent = number.end == comma.start && comma.end == more.start;
-        if comma.text != "," || !adjacent || !digits(number) || !digits(more) {
+        if comma.text != "," || !adjacent || !is_digits(number) || !is_digits(more) {
             return Ok(());
         }
         let written = format!("{},{}", number.text, more.text);

@@ -1,10 +1,10 @@
 //! Rules that answer enterprises (docs/interfaces/rules.md). The console and plain mode use the same grammar. Rules do
 //! not send replies themselves: they produce ordinary calls of the two tools for deals.
 //!
-//! `grammar` parses rules, `condition` matches threads, and `filter` parses conditions without a rule. `thread`
-//! contains the fields of a waiting thread, and `batch` applies rules to all threads. `plan_economics` computes what an
-//! offer earns, `turn` parses turns of any thread, and `lost_thread` collects what the record shows about a decline.
-//! All modules use only data that is visible to players.
+//! `grammar` parses rules, `condition` matches threads, and `filter` parses conditions that are not part of a rule.
+//! `thread` contains the fields of a waiting thread, and `batch` applies rules to all waiting threads.
+//! `plan_economics` computes what an offer earns, `turn` parses turns of any thread, and `lost_thread` collects what
+//! the record shows about a thread that ended without a deal. All modules use only data that is visible to players.
 
 mod batch;
 mod condition;

@@ -8,11 +8,11 @@ use super::turn::{Turn, format_offer_lines};
 use novamind_base::formatting::{dollars_and_cents, percent};
 use novamind_session::identifiers::Plan;
 
-/// Name of the parameter that sets the lowest number of turns that an enterprise can have.
+/// Name of the parameter for the lowest patience of an enterprise, in turns.
 pub const MIN_TURNS_PARAMETER: &str = "customer_generation.max_negotiation_turns_min";
 
-/// Phrases that show that a sentence is about alternatives, a budget or a deadline.
-const STATEMENT_WORDS: [&str; 12] = [
+/// Phrases that identify a sentence about alternatives, a budget or a deadline.
+const REASON_PHRASES: [&str; 12] = [
     "alternative",
     "vendor",
     "competitor",
@@ -26,22 +26,22 @@ const STATEMENT_WORDS: [&str; 12] = [
     "afford",
     "deadline",
 ];
-const MAX_STATEMENTS: usize = 2;
+const MAX_QUOTED_REASONS: usize = 2;
 
 /// The subscription of an enterprise when its thread ended.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Subscription {
-    /// `lead`, `subscribed`, `cancelled` or `lost`.
+    /// Status of the subscription: `lead`, `subscribed`, `cancelled` or `lost`.
     pub status: String,
-    /// Plan of a subscriber.
+    /// Plan of the subscription; `None` if the enterprise never subscribed.
     pub plan: Option<Plan>,
-    /// Price that a subscriber pays, in dollars per seat per month.
+    /// Price of the subscription, in dollars per seat per month.
     pub price: f64,
-    /// Day on which the subscription ended.
+    /// Day on which the subscription ended or the lead was lost.
     pub end_day: Option<u32>,
 }
 
-/// Who let the thread end.
+/// The side that let the thread end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LossCause {
     /// The enterprise did not answer the last offer.
@@ -53,7 +53,7 @@ pub enum LossCause {
 /// A thread that ended without a deal, and what the record shows about the reason.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LostThread {
-    /// Who let the thread end.
+    /// The side that let the thread end.
     pub cause: LossCause,
     /// What happened, as a sentence without its subject.
     summary: String,
@@ -62,11 +62,11 @@ pub struct LostThread {
 }
 
 impl LostThread {
-    /// Returns how a thread of kind `kind` was lost. Returns `None` if the thread ended with a deal or a rejection by
+    /// Returns how a thread of type `kind` was lost. Returns `None` if the thread ended with a deal or a rejection by
     /// the player, or if the enterprise can still answer. The thread must not be waiting for the player.
     ///
-    /// `min_turns` is the lowest number of turns that an enterprise can have, or `None` in runs whose player may know
-    /// only what the tool texts state.
+    /// `min_turns` is the lowest patience of an enterprise, in turns. It is `None` in runs whose player may know only
+    /// what the tool texts state.
     pub fn from_turns(
         turns: &[Turn],
         kind: &str,
@@ -99,7 +99,7 @@ fn unanswered(turns: &[Turn], last: &Turn, kind: &str, subscription: &Subscripti
         })
         .into_iter()
         .collect();
-    facts.extend(statements(turns));
+    facts.extend(quoted_reasons(turns));
     let summary = format!("received no answer from you to {what} of day {}{end}.", last.day);
     LostThread { cause: LossCause::Unanswered, summary, facts }
 }
@@ -116,7 +116,7 @@ fn declined(
     let summary = format!("declined your offer {offers} of day {}{end}, without a message.", last.day);
     let mut facts = vec![price_fact(turns, last)];
     facts.extend(terms_fact(turns, last, kind, subscription));
-    facts.extend(statements(turns));
+    facts.extend(quoted_reasons(turns));
     facts.extend(lateness_fact(turns, last));
     let count = turns.iter().filter(|turn| !turn.offers.is_empty()).count();
     let offers =
@@ -134,7 +134,7 @@ fn declined(
     LostThread { cause: LossCause::Declined, summary, facts }
 }
 
-/// Returns the day, the plan and the amount of the price that the enterprise asked for last.
+/// Returns the last price that the enterprise asked for: day, plan, and dollars per seat per month.
 fn asked_price(turns: &[Turn]) -> Option<(u32, Option<Plan>, f64)> {
     let at = turns.iter().rposition(|turn| turn.price.is_some())?;
     let offered = turns[..at].iter().rev().find(|turn| !turn.offers.is_empty());
@@ -201,25 +201,26 @@ fn terms_fact(turns: &[Turn], last: &Turn, kind: &str, subscription: &Subscripti
     }
 }
 
-/// Quotes sentences of the enterprise about alternatives, its budget or a deadline, the latest first.
-fn statements(turns: &[Turn]) -> Vec<String> {
+/// Quotes sentences of the enterprise about alternatives, its budget or a deadline, from the latest message first.
+fn quoted_reasons(turns: &[Turn]) -> Vec<String> {
     let messages =
         turns.iter().rev().filter(|turn| turn.sender == "customer" && turn.closing_reason.is_empty());
     let quoted = messages.flat_map(|turn| {
-        let is_statement = |sentence: &&str| {
+        let gives_reason = |sentence: &&str| {
             let lower = sentence.to_lowercase();
-            STATEMENT_WORDS.iter().any(|word| lower.contains(word))
+            REASON_PHRASES.iter().any(|word| lower.contains(word))
         };
-        let found: Vec<&str> = sentences(&turn.text).into_iter().filter(is_statement).collect();
+        let found: Vec<&str> = sentences(&turn.text).into_iter().filter(gives_reason).collect();
         found
             .into_iter()
             .map(|sentence| format!("It wrote on day {}: “{sentence}”", turn.day))
             .collect::<Vec<_>>()
     });
-    quoted.take(MAX_STATEMENTS).collect()
+    quoted.take(MAX_QUOTED_REASONS).collect()
 }
 
-/// Splits a text after each punctuation mark that a space follows. A dot in a price does not end a sentence.
+/// Splits a text after each punctuation mark that is followed by a space, so that a decimal point does not end a
+/// sentence.
 fn sentences(text: &str) -> Vec<&str> {
     let (mut found, mut start) = (Vec::new(), 0);
     let marks = text.match_indices(['.', '?', '!']).map(|(at, _)| at + 1);
@@ -232,13 +233,13 @@ fn sentences(text: &str) -> Vec<&str> {
     found
 }
 
-/// Describes how long the last message of the enterprise waited for the last offer.
+/// States how many days the enterprise waited for the last offer, if it waited more than one day.
 fn lateness_fact(turns: &[Turn], last: &Turn) -> Option<String> {
     let before = turns.len().checked_sub(2).map(|at| &turns[at]).filter(|turn| turn.sender == "customer")?;
     let days = last.day.saturating_sub(before.day);
     (days > 1).then(|| {
         format!(
-            "Your offer came {days} days after its message of day {}. Late answers cost relationship.",
+            "Your offer came {days} days after its message of day {}. Late answers harm the relationship.",
             before.day
         )
     })

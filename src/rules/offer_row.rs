@@ -1,4 +1,4 @@
-//! Parses the offer in a database row of a negotiation.
+//! Parses the offer in a negotiation row of the database.
 
 use serde_json::Value;
 

@@ -7,11 +7,11 @@ use novamind_base::formatting::{dollars, dollars_and_cents, grouped_number, perc
 use novamind_session::Session;
 use novamind_session::identifiers::{Group, Plan};
 
-/// Days per month for estimates.
+/// Number of days that estimates count as one month.
 const DAYS_PER_MONTH: f64 = 30.0;
 
-/// Mean days since signing from which measured usage is preferred to a market study. The usage rate of an enterprise is
-/// drawn at the deal and again at every bill, so newer seats show a single draw.
+/// Lowest mean number of days since signing at which measured usage is preferred to a market study. The usage rate of
+/// an enterprise is drawn at the deal and again at every bill, so newer seats show a single draw.
 const MIN_MEASURED_DAYS: f64 = 30.0;
 
 /// Prices, quotas and costs of the plans, and the usage per seat of each group.
@@ -47,8 +47,8 @@ impl PlanEconomics {
         }
     }
 
-    /// Returns the usage of a group in units per seat per day, and the source of this figure: the last day, or the
-    /// market study if no enterprise of the group used the product or if its seats are new.
+    /// Returns the usage of a group in units per seat per day, and the source of this figure. The source is the last
+    /// day, or the market study if no enterprise of the group used the product or if the group's seats are new.
     pub fn usage_per_seat(&self, group: &str) -> Option<(f64, String)> {
         let study = Group::parse(group).and_then(|group| self.estimated_usage.get(&group).copied());
         let Some(measured) = self.usage.measured_usage(group) else {
@@ -150,9 +150,9 @@ pub struct OfferTotals {
     pub seats: u32,
     /// Largest possible revenue from the offers, in dollars per month.
     pub monthly_revenue: f64,
-    /// Revenue from enterprises with known compute cost, and this compute cost, in dollars per month.
-    known_margin: (f64, f64),
-    /// Lowest and highest price as a share of the list price.
+    /// Revenue from the enterprises whose compute cost is known, and that compute cost, in dollars per month.
+    revenue_and_compute: (f64, f64),
+    /// Lowest and highest offered price as a share of the list price; `None` before the first offer with a list price.
     list_shares: Option<(f64, f64)>,
     /// Number of offers that include a plan whose quota does not cover the enterprise's usage.
     pub above_quota: u32,
@@ -165,7 +165,8 @@ pub struct OfferTotals {
 impl OfferTotals {
     /// Returns the share of revenue that remains after compute cost, or `None` if no compute cost is known.
     pub fn margin(&self) -> Option<f64> {
-        (self.known_margin.0 > 0.0).then(|| 1.0 - self.known_margin.1 / self.known_margin.0)
+        (self.revenue_and_compute.0 > 0.0)
+            .then(|| 1.0 - self.revenue_and_compute.1 / self.revenue_and_compute.0)
     }
 
     /// Adds an enterprise that receives a reply.
@@ -181,8 +182,8 @@ impl OfferTotals {
         let Some(highest) = highest else { return };
         self.monthly_revenue += highest.monthly_revenue;
         if let Some(compute) = highest.compute_cost {
-            self.known_margin =
-                (self.known_margin.0 + highest.monthly_revenue, self.known_margin.1 + compute);
+            self.revenue_and_compute =
+                (self.revenue_and_compute.0 + highest.monthly_revenue, self.revenue_and_compute.1 + compute);
         }
         let is_loss = |line: &OfferLineEconomics| line.margin().is_some_and(|margin| margin < 0.0);
         self.at_loss += u32::from(lines.iter().any(is_loss));

@@ -35,7 +35,7 @@ impl MeasuredUsage {
 }
 
 impl SeatUsage {
-    /// Reads the rows of [`SEAT_USAGE_SQL`], without individuals.
+    /// Reads the rows of [`SEAT_USAGE_SQL`] and ignores groups of individuals.
     pub fn from_rows(rows: &QueryResult) -> SeatUsage {
         let mut groups: BTreeMap<String, MeasuredUsage> = BTreeMap::new();
         for row in &rows.rows {

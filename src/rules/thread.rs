@@ -15,7 +15,7 @@ use novamind_tools::{Rejection, ToolId};
 /// SQL query for the last messages of enterprises. A thread ends a week after the last message.
 pub const LAST_MESSAGES_SQL: &str = include_str!("../../assets/readings/last_letters.sql");
 
-/// The plan that the enterprise named in its latest message, with a price or as a request, by thread.
+/// The plan that each enterprise named in its latest message, with a price or in a request, by thread number.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RequestedPlans(BTreeMap<u32, Plan>);
 
@@ -35,7 +35,7 @@ pub fn first_plan_in(text: &str) -> Option<Plan> {
     plans_in(text).first().copied()
 }
 
-/// Returns the first plan in a text that is not the enterprise's current plan. A request may name both plans.
+/// Returns the first plan that a text names, other than the enterprise's current plan. A request may name both plans.
 pub(super) fn other_plan_in(text: &str, present: Option<Plan>) -> Option<Plan> {
     plans_in(text).into_iter().find(|plan| Some(*plan) != present)
 }
@@ -54,7 +54,7 @@ fn plans_in(text: &str) -> Vec<Plan> {
 /// A waiting thread with all fields that rules use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThreadContext {
-    /// The waiting thread of the session.
+    /// The thread, as the session lists it.
     pub waiting: WaitingThread,
     /// Plan for which the enterprise named a price or asked for the price.
     pub asked_plan: Option<Plan>,
@@ -63,7 +63,7 @@ pub struct ThreadContext {
 }
 
 impl ThreadContext {
-    /// Collects the fields of a waiting thread that rules use.
+    /// Collects all fields that rules use, for one waiting thread.
     pub fn new(waiting: &WaitingThread, plans: &RequestedPlans, market: &PlanEconomics) -> ThreadContext {
         let only = || match waiting.last_offer.as_slice() {
             [(plan, _)] if waiting.asked.is_some() => Some(*plan),

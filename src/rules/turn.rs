@@ -18,15 +18,15 @@ pub struct Turn {
     pub offers: Vec<(Plan, f64)>,
     /// Price that the enterprise asked for, in dollars per seat per month.
     pub price: Option<f64>,
-    /// Day of the turn.
+    /// Simulated day on which the message was sent.
     pub day: u32,
     /// Reason for closing the thread, which is empty if the turn did not close the thread.
     pub closing_reason: String,
 }
 
 impl Turn {
-    /// Parses a row whose columns from the fourth on are: turn number, sender, text, offer, day, seats, reason for
-    /// closing.
+    /// Parses a row. From the fourth column on, the columns are turn number, sender, text, offer, day, seats and reason
+    /// for closing.
     pub fn from_row(row: &[Cell]) -> Turn {
         let (offers, price) = parse_offer(text_at(row, 6));
         Turn {

@@ -1,8 +1,8 @@
-//! Instructions for an agent: a page that describes goal, rules and requests, and the documentation of tools and tables.
+//! Instructions for an agent: a page that describes the goal, the rules and the requests, and the documentation of
+//! tools and tables.
 //!
-//! The instructions are generated from the catalog and the current parameters. The page contains the same
-//! information as the instructions of the benchmark. It contains no hidden state and no advice on how to play
-//! well.
+//! The instructions are generated from the catalog and the current parameters. The page contains the same information
+//! as the instructions of the benchmark. It contains no hidden state and no advice on how to play well.
 
 use std::path::Path;
 
@@ -23,55 +23,57 @@ const ERRORS: &str = include_str!("../../assets/agent/errors.md");
 /// Heading of the section that follows the goal, the calendar and the rules.
 const HOW_TO_CALL: &str = "## How to call";
 
-/// File name of the instructions.
+/// File to which the instructions are written.
 const PAGE_FILE: &str = "AGENT.md";
 
 /// Data of the run that a page describes.
 #[derive(Debug, Clone)]
 pub struct PageContext<'a> {
-    /// Last day of the run.
+    /// Planned last day of the run.
     pub days: u32,
     /// Cash on day 0, in dollars.
     pub cash: f64,
-    /// Current parameters of the run.
+    /// Parameter values that are inserted into the texts.
     pub numbers: &'a ParameterNumbers,
 }
 
 /// Returns the instructions for an agent as Markdown.
-pub fn agent_page(of: &PageContext<'_>) -> String {
-    let filled = of.numbers.substitute(PAGE);
+pub fn agent_page(context: &PageContext<'_>) -> String {
+    let filled = context.numbers.substitute(PAGE);
     let parts = [
-        ("{days}", of.days.to_string()),
-        ("{cash}", dollars(of.cash)),
+        ("{days}", context.days.to_string()),
+        ("{cash}", dollars(context.cash)),
         ("{how}", SHELL.trim_end().to_owned()),
         ("{tools_document}", "tools.md".to_owned()),
         ("{tables_document}", "tables.md".to_owned()),
-        ("{tools}", tool_list(of.numbers)),
-        ("{tables}", table_list(of.numbers)),
+        ("{tools}", tool_list(context.numbers)),
+        ("{tables}", table_list(context.numbers)),
         ("{errors}", ERRORS.trim_end().to_owned()),
     ];
     parts.iter().fold(filled, |text, (name, value)| text.replace(name, value))
 }
 
-/// Returns the goal, the calendar and the rules from the page, for clients that receive the tools separately.
-pub fn goal_and_rules(of: &PageContext<'_>) -> String {
-    let whole = agent_page(of);
+/// Returns the goal, the calendar and the rules from the page, for clients that receive the descriptions of the tools
+/// separately.
+pub fn goal_and_rules(context: &PageContext<'_>) -> String {
+    let whole = agent_page(context);
     whole.split_once(HOW_TO_CALL).map_or(whole.as_str(), |(before, _)| before).trim_end().to_owned()
 }
 
-/// Writes the instructions and the documentation to a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`, `tables.json`.
+/// Writes the instructions and the documentation to a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`,
+/// `tables.json`.
 ///
 /// # Errors
 /// The folder cannot be written.
-pub fn write_documents(folder: &Path, of: &PageContext<'_>) -> Result<(), RunError> {
+pub fn write_documents(folder: &Path, context: &PageContext<'_>) -> Result<(), RunError> {
     std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
-    let documents: Vec<ToolDocument> = specs().map(|spec| document_tool(spec, of.numbers)).collect();
+    let documents: Vec<ToolDocument> = specs().map(|spec| document_tool(spec, context.numbers)).collect();
     let files = [
-        (PAGE_FILE, agent_page(of)),
-        ("tools.md", tool_manual(of.numbers)),
+        (PAGE_FILE, agent_page(context)),
+        ("tools.md", tool_manual(context.numbers)),
         ("tools.json", format!("{:#}\n", json!(documents))),
-        ("tables.md", table_manual(of.numbers)),
-        ("tables.json", format!("{:#}\n", json!(tables(of.numbers.interface())))),
+        ("tables.md", table_manual(context.numbers)),
+        ("tables.json", format!("{:#}\n", json!(tables(context.numbers.interface())))),
     ];
     files.iter().try_for_each(|(name, text)| {
         let path = folder.join(name);

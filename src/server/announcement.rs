@@ -1,5 +1,5 @@
-//! The announcement of a server: a file in the run folder. Other processes use the file to find the server or to
-//! detect that a program plays the run.
+//! The announcement of a server: a file in the run folder. From this file, other processes find the server or detect
+//! that a program plays the run.
 
 use std::path::{Path, PathBuf};
 
@@ -9,15 +9,15 @@ use novamind_record::error::RunError;
 use novamind_record::files::write_atomically;
 use novamind_record::folder::lock::SERVER_FILE;
 
-/// The address at which a server plays a run.
+/// The address of a server, and the run that it plays.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Announcement {
     /// ID of the served run.
     pub run: String,
-    /// Port on 127.0.0.1. `None` if the client uses standard input and output, so that no other process can connect.
+    /// Port on 127.0.0.1. `None` if the server uses standard input and output, so that no other process can connect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub port: Option<u16>,
-    /// Process id of the server.
+    /// Process id of the server, for messages to the user.
     pub pid: u32,
     /// File with the token that requests must include, if a token is required.
     #[serde(default, skip_serializing_if = "Option::is_none")]

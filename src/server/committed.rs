@@ -1,4 +1,4 @@
-//! The state after the last executed request, which a server of release 2 reports even while a week is simulated.
+//! The state after the last executed request. A server of release 2 reports this state even while a week is simulated.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -23,7 +23,7 @@ struct State {
 }
 
 impl State {
-    fn of(session: &Session) -> State {
+    fn from_session(session: &Session) -> State {
         let mut state = State { status: Value::Null, dashboard: String::new(), running: None };
         state.update(session);
         state
@@ -43,7 +43,7 @@ impl State {
 impl CommittedState {
     /// Returns the current state of a run.
     pub fn new(session: &Session) -> CommittedState {
-        CommittedState(Arc::new(Mutex::new(State::of(session))))
+        CommittedState(Arc::new(Mutex::new(State::from_session(session))))
     }
 
     /// Records the start of a request that can change the run.
@@ -51,7 +51,8 @@ impl CommittedState {
         self.access(|state| state.running = Some(id.to_owned()));
     }
 
-    /// Replaces the state after a request. `session` is `None` after an internal error, which keeps the earlier state.
+    /// Replaces the state after a request. Keeps the earlier state if `session` is `None`, which it is after an
+    /// internal error.
     pub fn commit(&self, session: Option<&Session>) {
         self.access(|state| match session {
             Some(session) => state.update(session),

@@ -7,14 +7,14 @@ use novamind_database::Interrupt;
 /// A request that is being executed and can be interrupted.
 struct RunningRequest {
     number: u64,
-    /// Whether the request only runs a script or statement. The result of such a request is not needed after the
-    /// client has disconnected.
+    /// Whether the request only runs a script or statement, so that its result is not needed after the client has
+    /// disconnected.
     is_code: bool,
     interrupt: Interrupt,
 }
 
-/// The running request and its interrupt. If the server shuts down during a week, the week is still simulated
-/// to its end, but the week's calculations are stopped.
+/// The running request and its interrupt. If the server shuts down during a week, the simulation of the week continues
+/// to its end, but the calculations of the week are stopped.
 #[derive(Clone, Default)]
 pub(super) struct CurrentRequest(Arc<Mutex<Option<RunningRequest>>>);
 
@@ -34,7 +34,7 @@ impl CurrentRequest {
         self.stop_if(|_| true);
     }
 
-    /// Returns a guard that stops the request if the guard is dropped before the response.
+    /// Returns a guard that stops the request when it is dropped, unless the response was received first.
     pub fn watch(&self, number: u64) -> RequestWatch {
         RequestWatch { running: self.clone(), number, is_answered: false }
     }

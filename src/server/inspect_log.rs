@@ -85,7 +85,8 @@ fn tool_calls(sample: &Value) -> Vec<ForeignCall> {
     found
 }
 
-/// Returns whether the response to a tool call reports acceptance. Returns `None` if the response is missing or unclear.
+/// Returns whether the response to a tool call reports acceptance. Returns `None` if the response is missing or
+/// unclear.
 fn is_accepted(after: &[Value], id: &Value) -> Option<bool> {
     let answer = after.iter().find(|message| message["role"] == "tool" && message["tool_call_id"] == *id)?;
     if !answer["error"].is_null() {

@@ -1,9 +1,9 @@
-//! Interfaces for programs: the HTTP routes of the released simulator, and the Model Context Protocol (docs/interfaces/http.md,
-//! docs/interfaces/mcp.md).
+//! Interfaces for programs: the HTTP routes of the released simulator, and the Model Context Protocol
+//! (docs/interfaces/http.md, docs/interfaces/mcp.md).
 //!
-//! One thread owns the session and executes requests one after the other. Network code runs on other threads
-//! and never accesses the crate `session`. Programs use the same session as people: calls, rejections and
-//! record lines are the same.
+//! One thread owns the session and executes requests one after the other. Network code runs on other threads and never
+//! accesses the crate `session`. Programs use the same session as people, so calls, rejections and record lines are the
+//! same.
 
 mod agent_page;
 mod announcement;

@@ -1,5 +1,6 @@
 //! Parses bodies that contain `NaN` or `Infinity`. These literals are not valid JSON, but Python's `json.dumps` writes
-//! them. The rejection is the same as for a wrong argument, so that every client shows the name of the argument.
+//! them. They are rejected in the same form as an invalid argument, so that every client shows the name of the
+//! argument.
 
 use serde_json::Value;
 
@@ -10,8 +11,8 @@ const LITERALS: [&str; 3] = ["-Infinity", "Infinity", "NaN"];
 /// Prefix that marks a text as a converted literal.
 const MARK: &str = "\u{1}not a number: ";
 
-/// Parses a body with non-finite literals. Returns the body with the literals as texts, and a rejection that names the
-/// first literal. Returns `None` if the body contains no such literal or is invalid for another reason.
+/// Parses a body with non-finite literals. Returns the body, in which the literals are strings, and a rejection that
+/// names the first literal. Returns `None` if the body contains no such literal or is invalid for another reason.
 pub fn parse_with_literals(bytes: &[u8]) -> Option<(Value, Rejection)> {
     let mut value = serde_json::from_str(&mark_literals(std::str::from_utf8(bytes).ok()?)).ok()?;
     let (path, literal) = restore_literals(&mut value)?;

@@ -8,7 +8,7 @@ use novamind_tools::{ParameterNumbers, ToolId};
 
 /// Returns the OpenAPI description of the HTTP interface.
 ///
-/// `is_release_2` selects the interface of release 2.
+/// `is_release_2` selects the interface of release 2 instead of that of release 1.
 pub fn document(numbers: &ParameterNumbers, is_release_2: bool) -> Value {
     let mut paths = paths(numbers);
     if is_release_2 {
@@ -61,7 +61,7 @@ fn paths(numbers: &ParameterNumbers) -> Value {
     })
 }
 
-/// Changes the paths to describe the interface of release 2.
+/// Changes the paths so that they describe the interface of release 2.
 fn describe_release_2(paths: &mut Value) {
     let require_id = |schema: &mut Value| match &mut schema["required"] {
         Value::Array(fields) => fields.push(schema::REQUEST_ID.into()),

@@ -17,12 +17,12 @@ const MAX_LINE_BYTES: usize = 4 << 20;
 const WEEK_OPERATION: &str = "next-week";
 const CALL_PREFIX: &str = "call:";
 
-/// The entries of a history that can be executed, and the other lines.
+/// The entries of a history that can be executed, and the lines that cannot.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReleaseHistory {
     /// Executable entries in the order of the file.
     pub entries: Vec<HistoryEntry>,
-    /// Lines that are not executed.
+    /// Lines that are not executed, with the reason.
     pub skipped: Vec<LineRemark>,
 }
 
@@ -31,15 +31,15 @@ pub struct ReleaseHistory {
 pub struct HistoryEntry {
     /// Number of the line, counted from 1.
     pub line: usize,
-    /// ID of the request.
+    /// Request ID that the client sent.
     pub request_id: String,
     /// Name of the tool in this program.
     pub tool: &'static str,
-    /// Arguments of the call.
+    /// Arguments of the call, as recorded.
     pub input: Value,
-    /// Day after the request.
+    /// Day after the request, according to the history.
     pub day: u32,
-    /// Whether the request was successful.
+    /// Whether the request was successful in the released simulator.
     pub success: bool,
 }
 
@@ -48,18 +48,18 @@ pub struct HistoryEntry {
 pub struct LineRemark {
     /// Number of the line, counted from 1.
     pub line: usize,
-    /// Explanation for the user.
+    /// Why the line was skipped or differs.
     pub reason: String,
 }
 
 /// The result of playing a history.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Default)]
 pub struct PlayedHistory {
-    /// Number of lines with an entry.
+    /// Number of entries in the history, including skipped lines.
     pub entries: usize,
-    /// Number of executed entries.
+    /// Number of entries that were executed before the run ended.
     pub executed: usize,
-    /// Lines that were not executed.
+    /// Lines that cannot be executed, with the reason.
     pub skipped: Vec<LineRemark>,
     /// Number of entries after the end of the run, which were not executed.
     pub after_end: usize,
@@ -67,7 +67,7 @@ pub struct PlayedHistory {
     pub rejected_here: Vec<LineRemark>,
     /// Entries that were rejected in the released simulator and successful here.
     pub accepted_here: Vec<LineRemark>,
-    /// Entries after which the day of this run differs from the day in the history.
+    /// Entries after which the day of this run differs from the recorded day.
     pub different_days: Vec<LineRemark>,
 }
 
@@ -88,7 +88,7 @@ impl ReleaseHistory {
         })
     }
 
-    /// Parses a history.
+    /// Parses a history of release 2.
     ///
     /// # Errors
     /// A line is not an entry, the days of the entries do not follow each other, or no entry can be executed. The error
@@ -103,7 +103,7 @@ impl ReleaseHistory {
             }
             let entry: Map<String, Value> = match serde_json::from_slice(text) {
                 Ok(entry) => entry,
-                // A complete line ends with a line feed, so only an incomplete line can be the last element.
+                // A complete line ends with a line feed, so the last element can only be an incomplete line.
                 Err(_) if number == lines.len() => {
                     history.skip(number, "the line is incomplete");
                     continue;
@@ -128,7 +128,7 @@ impl ReleaseHistory {
                     success: entry["success"] == true,
                 });
             } else {
-                history.skip(number, &format!("the operation {:?} has no counterpart", checked.operation));
+                history.skip(number, &format!("this program has no operation {:?}", checked.operation));
             }
         }
         match history.entries.is_empty() {
@@ -161,7 +161,7 @@ impl ReleaseHistory {
             let remark = |reason: String| LineRemark { line: entry.line, reason };
             match (entry.success, response.is_success()) {
                 (true, false) => {
-                    // The error of a call with several deals has a line for each deal.
+                    // The error of a call with several deals has one line per deal.
                     let error = response.body["error"].as_str().unwrap_or_default();
                     let message = error.lines().next().unwrap_or_default();
                     played.rejected_here.push(remark(format!("{}: {message}", entry.tool)));
@@ -179,8 +179,8 @@ impl ReleaseHistory {
     }
 }
 
-/// Checks the fields of an entry that begins on `day`. Returns `None` if the outcome of the request is
-/// unknown.
+/// Checks the fields of an entry. `day` is the day after the previous entry. Returns `None` if the outcome of the
+/// request is unknown.
 fn check_entry(entry: &Map<String, Value>, day: u32) -> Result<Option<Checked>, String> {
     let Some(operation) = entry.get("operation").and_then(Value::as_str) else {
         return Err("the entry has no operation. Logs of older clients do not contain the input of requests, so they \
@@ -206,7 +206,7 @@ fn check_entry(entry: &Map<String, Value>, day: u32) -> Result<Option<Checked>, 
     }
     let can_advance = operation == WEEK_OPERATION;
     if after < before || (after > before && !can_advance) {
-        return Err(format!("{operation} cannot lead from day {before} to day {after}"));
+        return Err(format!("{operation} cannot advance the run from day {before} to day {after}"));
     }
     if !entry.get("success").is_some_and(Value::is_boolean) {
         return Err("success is neither true nor false".to_owned());
@@ -214,7 +214,7 @@ fn check_entry(entry: &Map<String, Value>, day: u32) -> Result<Option<Checked>, 
     Ok(Some(Checked { operation: operation.to_owned(), request_id: id.to_owned(), day: after }))
 }
 
-/// Returns the tool of an operation, or `None` if this program has no tool that changes a run in this way.
+/// Returns the tool of an operation, or `None` if no tool that changes a run corresponds to the operation.
 fn tool_of_operation(operation: &str) -> Option<&'static str> {
     if operation == WEEK_OPERATION {
         return Some(ToolId::NextWeek.name());
@@ -332,7 +332,7 @@ mod tests {
             (without("day"), "day is not a day"),
             (without("success"), "neither true nor false"),
             (prices("b", 7).to_string(), "begins on day 7, but the previous entries end on day 0"),
-            (moved, "cannot lead from day 0 to day 7"),
+            (moved, "cannot advance the run from day 0 to day 7"),
         ] {
             let file = format!("{}\n{line}\n{}\n", prices("a", 0), prices("z", 0));
             let error = ReleaseHistory::parse(file.as_bytes()).expect_err(problem);

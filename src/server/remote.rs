@@ -18,7 +18,8 @@ use novamind_record::folder::lock::is_locked;
 
 /// Time limit for the health check. A working server responds immediately, even during a week.
 const HEALTH_DEADLINE: Duration = Duration::from_secs(10);
-/// Time limit for all requests except the health check. A week of a large company takes seconds, a script can take minutes.
+/// Time limit for all requests except the health check. A week of a large company takes seconds, and a script can take
+/// minutes.
 const REQUEST_DEADLINE: Duration = Duration::from_secs(1800);
 /// Maximum size of a response in bytes.
 const MAX_RESPONSE_BYTES: usize = 256 * 1024 * 1024;
@@ -61,17 +62,17 @@ impl RemoteServer {
         };
         let mut remote = RemoteServer { port: announcement.port?, announcement, token, has_release_2: false };
         let health = remote.send(Method::GET, "/health", None, HEALTH_DEADLINE).ok()?;
-        // A server that has too many connections rejects the health check, and its response does not name the
-        // run. The server will also reject the actual request.
+        // A server with too many connections rejects the health check with a response that does not name the run. The
+        // server will also reject the actual request.
         let is_full = health.status == 503 && health.body["code"] == "too_many_connections";
         remote.has_release_2 = health.body["interface"] == "release_2";
         (is_full || health.status == 200 && health.body["run"] == run).then_some(remote)
     }
 
-    /// Returns a new request id if a call of the tool needs one.
+    /// Returns a new request id if calls of the tool need one.
     ///
     /// # Errors
-    /// The system returns no random numbers.
+    /// The system cannot generate random numbers.
     pub fn new_request_id(&self, tool: &str) -> Result<Option<String>, RunError> {
         (self.has_release_2 && needs_request_id(tool)).then(new_token).transpose()
     }
@@ -84,7 +85,7 @@ impl RemoteServer {
         self.send(Method::GET, path, None, REQUEST_DEADLINE)
     }
 
-    /// Sends a POST request with an object.
+    /// Sends a POST request with a JSON object as its body.
     ///
     /// # Errors
     /// Same as [`RemoteServer::get`]. The server may have executed the request despite the error.
@@ -134,8 +135,7 @@ async fn exchange(port: u16, request: Request<Body>) -> Result<ServerResponse, S
         .await
         .map_err(|error| in_words(&error))?;
     tokio::spawn(async move {
-        // Errors of the connection are ignored here, because the request that waits for the response reports
-        // them.
+        // Errors of the connection are ignored here, because the pending request reports them.
         let _ = connection.await;
     });
     let response = sender.send_request(request).await.map_err(|error| in_words(&error))?;

@@ -29,18 +29,18 @@ pub enum ApiRequest {
     },
     /// Request to submit a rationale and forecasts and to simulate a week.
     NextWeek {
-        /// Rationale of the week.
+        /// Rationale of the week, not yet validated.
         rationale: Value,
-        /// Forecasts for four horizons.
+        /// Forecasts of cash for four horizons.
         predictions: Value,
-        /// The required current day, or null for any day.
+        /// The day on which the run must be for the week to start, or null for any day.
         expected_day: Value,
         /// ID of the request, or null if the client sent no id.
         request_id: Value,
     },
     /// Request to run an SQL statement.
     Query {
-        /// Text of one SQL statement.
+        /// A single SQL statement.
         sql: Value,
     },
     /// Request for the current day.
@@ -67,9 +67,9 @@ pub enum ApiRequest {
         /// ID of the request, or null if the client sent no id.
         request_id: Value,
     },
-    /// Request for the status and the response of the request with an id.
+    /// Request for the status of an earlier request, and for its response if it is completed.
     RequestStatus {
-        /// ID of the request in question.
+        /// ID of the earlier request.
         id: String,
     },
     /// Request for the notes of the run.
@@ -80,7 +80,7 @@ impl ApiRequest {
     /// Returns the request for a tool call. Calls to `query` and `next_week` become [`ApiRequest::Query`] and
     /// [`ApiRequest::NextWeek`].
     ///
-    /// The arguments may contain the request id.
+    /// `args` may contain the request id. It is used if `request_id` is null.
     pub fn from_tool_call(name: &str, args: Value, request_id: Value) -> ApiRequest {
         let mut fields = match args {
             Value::Object(fields) => fields,
@@ -126,7 +126,8 @@ impl ApiRequest {
         }
     }
 
-    /// Returns whether the request only runs a script or a statement. Such a request changes nothing and can be stopped.
+    /// Returns whether the request only runs a script or a statement. Such a request does not change the run and can be
+    /// stopped.
     pub fn runs_code(&self) -> bool {
         match self {
             ApiRequest::Query { .. } => true,
@@ -136,7 +137,7 @@ impl ApiRequest {
     }
 }
 
-/// Rejects a week with an unknown argument, because a misspelled `expected_day` would have no effect.
+/// Rejects a request for a week that has an unknown argument, because a misspelled `expected_day` would have no effect.
 fn unknown_week_argument(fields: &Map<String, Value>) -> Option<Rejection> {
     const KNOWN: [&str; 3] = ["rationale", "predictions", "expected_day"];
     let unknown = fields.keys().find(|name| !KNOWN.contains(&name.as_str()))?;
@@ -165,15 +166,15 @@ fn error_text(message: &str, results: &Value) -> String {
 pub enum ResponseStatus {
     /// The request succeeded, or a tool rejected the call.
     Done,
-    /// The request is malformed.
+    /// The request is malformed, or a statement, week or script was rejected.
     BadRequest,
     /// The token is missing or wrong.
     Unauthorized,
-    /// The request is not allowed.
+    /// The request is forbidden, for example because a web page sent it.
     Forbidden,
     /// The route, tool or script named by the request does not exist.
     NotFound,
-    /// Another week is being simulated.
+    /// Another week is being simulated, so the request cannot be executed now.
     Busy,
     /// An internal error occurred.
     Failed,
@@ -212,8 +213,8 @@ impl ApiResponse {
         ApiResponse { status: ResponseStatus::Done, body }
     }
 
-    /// Returns the response for a rejection. The fields `error` and `data` are read by programs for the
-    /// released simulator.
+    /// Returns the response for a rejection. Programs that were written for the released simulator read the fields
+    /// `error` and `data`.
     pub fn rejected(status: ResponseStatus, rejection: impl Into<RejectionRecord>) -> ApiResponse {
         let rejection = rejection.into();
         let error = error_text(&rejection.message, &json!(rejection.results));
@@ -226,7 +227,7 @@ impl ApiResponse {
         ApiResponse { status, body }
     }
 
-    /// Converts the response to the response of a tool call, in which every rejection is a normal result,
+    /// Converts the response to the response of a tool call. In tool calls, every rejection is a normal result,
     /// including rejections of statements and weeks.
     pub fn into_tool_response(mut self) -> ApiResponse {
         let is_tool_rejection = match self.status {
@@ -240,7 +241,7 @@ impl ApiResponse {
         self
     }
 
-    /// Returns the response for an invalid request that did not reach a tool.
+    /// Returns the response for an invalid request, which is rejected before a tool is called.
     pub fn invalid_request(
         status: ResponseStatus,
         code: &'static str,

@@ -11,7 +11,7 @@ use novamind_tools::{NotebookSection, Rejection, ToolId};
 /// Tools that ignore null arguments, because older programs send null for omitted arguments.
 const TOOLS_IGNORING_NULLS: [ToolId; 3] = [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetDailySpend];
 
-/// Executes a request. `via` is the interface that is named in the record.
+/// Executes a request. `via` is the interface that the record names as the source of the request.
 pub fn handle_request(session: &mut Session, request: ApiRequest, via: Via) -> ApiResponse {
     match request {
         ApiRequest::Call { tool, args, request_id } => handle_call(session, &tool, args, &request_id, via),
@@ -59,8 +59,8 @@ fn handle_call(
     {
         fields.retain(|_, value| !value.is_null());
     }
-    // Release 1 treats the arguments as the map by group, so a call without arguments clears this map. In release 2 the
-    // call changes nothing.
+    // Release 1 treats the arguments as the map by group, so a call without arguments clears the map. In release 2,
+    // such a call changes nothing.
     if tool == ToolId::SetTargetedOpsSpend.name()
         && args.as_object().is_some_and(Map::is_empty)
         && !session.has_release_2_interface()
@@ -97,7 +97,7 @@ fn week_response(week: &WeekResult) -> ApiResponse {
     ApiResponse::success(fields)
 }
 
-/// Returns the status of the request with an id, and the response of a completed request.
+/// Returns the status of an earlier request, and its response if the request is completed.
 fn request_status(session: &Session, id: &str) -> ApiResponse {
     let Some(stored) = session.stored_response(id) else {
         return ApiResponse::with_body(json!({ "request_id": id, "status": "unknown" }));
@@ -128,7 +128,7 @@ fn handle_query(session: &mut Session, sql: &Value) -> ApiResponse {
     }
 }
 
-/// Returns the status that the released simulator's server uses for this error of a statement.
+/// Returns the status that the released simulator's server returns for this error of a statement.
 fn query_error_status(code: &str, interface: Interface) -> ResponseStatus {
     match code {
         "sql_empty" => ResponseStatus::BadRequest,

@@ -9,7 +9,7 @@ use novamind_tools::{
 /// Name of the request field that contains the request id.
 pub const REQUEST_ID: &str = "request_id";
 
-/// Returns the schema fields with which a client can retry a tool call safely.
+/// Returns the schema of the fields that let a client retry a tool call safely.
 pub fn retry_fields(tool: ToolId) -> Map<String, Value> {
     let mut fields = Map::new();
     if tool == ToolId::NextWeek {
@@ -36,7 +36,7 @@ pub fn specs() -> impl Iterator<Item = &'static ToolSpec> {
     CATALOGUE.iter().map(|tool| tool.spec())
 }
 
-/// Returns the schema of the arguments of a tool.
+/// Returns the JSON Schema of a tool's arguments.
 pub fn arguments_schema(spec: &ToolSpec, numbers: &ParameterNumbers) -> Map<String, Value> {
     let property = |argument: &Argument| {
         let schema = match (spec.id, argument.name) {
@@ -91,7 +91,7 @@ fn value_schema(kind: &ArgumentKind) -> Value {
         ArgumentKind::Number(range) => number_schema("number", range),
         ArgumentKind::Integer(range) => number_schema("integer", range),
         ArgumentKind::Text => json!({ "type": "string" }),
-        // The description explains the structure, and the tool rejects invalid values.
+        // The description explains the structure, and the tool checks the value.
         ArgumentKind::Structure(_) => json!({}),
         ArgumentKind::Deals(_) => json!({ "type": "array" }),
         ArgumentKind::Map(_, range) => map_schema(number_schema("number", range)),
@@ -99,8 +99,8 @@ fn value_schema(kind: &ArgumentKind) -> Value {
     }
 }
 
-fn map_schema(of: Value) -> Value {
-    json!({ "type": "object", "additionalProperties": of })
+fn map_schema(values_schema: Value) -> Value {
+    json!({ "type": "object", "additionalProperties": values_schema })
 }
 
 fn number_schema(kind: &str, range: &NumberRange) -> Value {

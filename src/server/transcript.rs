@@ -13,20 +13,20 @@ use novamind_tools::{ToolId, find};
 /// Maximum size of a file in an archive, in bytes. A transcript of 500 days has a few megabytes.
 const MAX_FILE_BYTES: u64 = 512 << 20;
 
-/// The tool calls in an external transcript that name tools of this program, with the settings of the run.
+/// The calls of this program's tools in an external transcript, with the settings of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForeignTranscript {
-    /// Name of the player, if the transcript contains a name.
+    /// Name of the player; `None` if the transcript does not contain it.
     pub player: Option<String>,
-    /// Seed of the run, if the transcript contains the seed.
+    /// Seed of the run; `None` if the transcript does not contain it.
     pub seed: Option<u64>,
-    /// Name of the scenario, if the transcript contains the name.
+    /// Name of the scenario; `None` if the transcript does not contain it.
     pub scenario: Option<String>,
-    /// Last day of the run, if the transcript contains the day.
+    /// Last day of the run; `None` if the transcript does not contain it.
     pub days: Option<u32>,
-    /// Cash on day 0 in dollars, if the transcript contains the cash.
+    /// Cash on day 0 in dollars; `None` if the transcript does not contain it.
     pub cash: Option<f64>,
-    /// Hash of the final state, if the transcript contains the hash.
+    /// Hash of the final state; `None` if the transcript does not contain it.
     pub state_hash: Option<String>,
     /// Tool calls in the order of the transcript.
     pub calls: Vec<ForeignCall>,
@@ -41,7 +41,7 @@ pub struct ForeignCall {
     pub tool: String,
     /// Arguments of the call.
     pub arguments: Map<String, Value>,
-    /// Whether the call was accepted, if the transcript contains this information.
+    /// Whether the call was accepted; `None` if the transcript does not say so clearly.
     pub accepted: Option<bool>,
 }
 
@@ -50,10 +50,10 @@ pub struct ForeignCall {
 pub struct PlayedTranscript {
     /// Number of executed calls, including weeks and statements.
     pub call_count: usize,
-    /// Position, tool and result of each call that has a different result in the transcript or that follows
-    /// the end of the run.
+    /// Position, tool and reason of each call whose result differs from the transcript, or that follows the end of the
+    /// run.
     pub mismatches: Vec<(usize, String, String)>,
-    /// Number of accepted Python programs, which are not executed.
+    /// Number of calls that were not run because they contain a Python program.
     pub not_run: usize,
 }
 
@@ -80,7 +80,8 @@ impl ForeignTranscript {
         }
     }
 
-    /// Plays the calls in a run. Python programs in the calls are not executed. `progress` is called for each tool call.
+    /// Plays the calls in a run. Does not execute Python programs in the calls. `progress` is called after each tool
+    /// call.
     pub fn play(&self, session: &mut Session, progress: &mut dyn FnMut(usize)) -> PlayedTranscript {
         let mut played = PlayedTranscript::default();
         session.disable_python();
@@ -110,7 +111,7 @@ impl ForeignTranscript {
     }
 }
 
-/// Finds a tool by the name that a client recorded. Some clients prefix the name of the tool with the name of the server.
+/// Finds a tool by the name that a client recorded. Some clients add the name of the server as a prefix.
 pub(super) fn tool_name(name: &str) -> Option<&'static str> {
     let bare = name.rsplit(['.', '/', ':']).next().unwrap_or(name);
     let bare = bare.rsplit_once("__").map_or(bare, |(_, bare)| bare);

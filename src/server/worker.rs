@@ -1,4 +1,4 @@
-//! The thread that owns the session, and the handle through which interfaces send requests to the thread.
+//! The thread that owns the session, and the handle that interfaces use to send requests to this thread.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -22,18 +22,18 @@ use novamind_tools::NotebookSection;
 /// Function that receives reports of internal errors.
 pub type OnDefect = fn(&str);
 
-/// Properties of an interface that uses a session.
+/// How an interface is recorded, and where it reports internal errors.
 #[derive(Clone, Copy)]
 pub struct InterfaceInfo {
-    /// Interface that the record names for tool calls.
+    /// How the record names the interface in tool calls.
     pub via: Via,
-    /// Interface that the record names for the session.
+    /// How the record names the interface when a session starts.
     pub interface: &'static str,
     /// Function that is called with reports of internal errors.
     pub on_defect: OnDefect,
 }
 
-/// A request and the channel for its response.
+/// A request, and the channel on which its response is sent.
 struct QueuedRequest {
     number: u64,
     request: ApiRequest,
@@ -44,7 +44,7 @@ struct QueuedRequest {
 pub struct SessionWorker {
     thread: JoinHandle<Result<(), RunError>>,
     running: CurrentRequest,
-    /// Id and folder of the run.
+    /// ID and folder of the run, for the error that reports a panic.
     run: String,
     folder: Option<PathBuf>,
 }
@@ -60,7 +60,7 @@ impl SessionWorker {
             sender,
             committed: committed.clone(),
             advancing: advancing.clone(),
-            asked: Arc::default(),
+            request_count: Arc::default(),
             running: running.clone(),
         };
         let (folder, model) = (session.folder().map(PathBuf::from), session.model_settings().cloned());
@@ -77,7 +77,7 @@ impl SessionWorker {
         (SessionWorker { thread, running, run, folder }, handle)
     }
 
-    /// Stops the running script, calculation or statement. A server that shuts down does not wait for such code.
+    /// Stops the running script, calculation or statement, because a server that shuts down does not wait for it.
     pub fn stop_running_code(&self) {
         self.running.stop();
     }
@@ -85,7 +85,7 @@ impl SessionWorker {
     /// Waits until all responses are sent and the run is closed. All handles must have been dropped.
     ///
     /// # Errors
-    /// The last line of the record cannot be written; everything confirmed is saved. [`RunError::Defect`] if the
+    /// The last line of the record cannot be written; all confirmed actions are saved. [`RunError::Defect`] if the
     /// thread panicked.
     pub fn finish(self) -> Result<(), RunError> {
         let SessionWorker { thread, run, folder, .. } = self;
@@ -99,8 +99,8 @@ pub struct SessionHandle {
     sender: Sender<QueuedRequest>,
     committed: Option<CommittedState>,
     advancing: PendingWeeks,
-    /// Number of sent requests.
-    asked: Arc<AtomicU64>,
+    /// Number of requests that were sent; the next request gets this number.
+    request_count: Arc<AtomicU64>,
     running: CurrentRequest,
 }
 
@@ -110,8 +110,8 @@ impl SessionHandle {
         self.committed.as_ref()
     }
 
-    /// Sends a request and waits for the response. If the caller stops waiting, a script or statement is stopped, but
-    /// a week is still simulated to its end.
+    /// Sends a request and waits for the response. If the caller stops waiting, a script or statement is stopped, but a
+    /// week is simulated to its end.
     pub async fn send(&self, request: ApiRequest) -> ApiResponse {
         if let ApiRequest::NextWeek { request_id, .. } = &request
             && !self.advancing.try_begin(request_id)
@@ -123,7 +123,7 @@ impl SessionHandle {
             );
         }
         let (reply, answer) = oneshot::channel();
-        let number = self.asked.fetch_add(1, Ordering::Relaxed);
+        let number = self.request_count.fetch_add(1, Ordering::Relaxed);
         let watch = self.running.watch(number);
         if self.sender.send(QueuedRequest { number, request, reply }).is_err() {
             return worker_gone_response();
@@ -138,11 +138,12 @@ fn worker_gone_response() -> ApiResponse {
     ApiResponse::invalid_request(
         ResponseStatus::Failed,
         "closing",
-        "the server is closing the run; everything confirmed is saved",
+        "the server is closing the run; all confirmed actions are saved",
     )
 }
 
-/// Number of pending requests for a week, and their request id. All of them are retries of the first request.
+/// Number of pending requests for a week, and the request id that they share. All but the first are retries of the
+/// first.
 #[derive(Clone, Default)]
 struct PendingWeeks(Arc<Mutex<(usize, Value)>>);
 
@@ -160,7 +161,7 @@ impl PendingWeeks {
         true
     }
 
-    /// Removes a request for a week after its response was determined.
+    /// Removes a pending request for a week once its response is known.
     fn end(&self) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).0 -= 1;
     }
@@ -214,7 +215,7 @@ impl WorkerState {
         }
     }
 
-    /// Returns whether the run has calculations, which run before each week.
+    /// Returns whether the run has calculations. They run before each week.
     fn has_calculations(&self) -> bool {
         let kept = |session: &Session| {
             !session.notebook().statements(NotebookSection::Calculation).entries().is_empty()
@@ -222,8 +223,7 @@ impl WorkerState {
         self.session.as_ref().is_some_and(kept)
     }
 
-    /// Executes a request. While a request that can change the run is executed, the committed state contains
-    /// its id.
+    /// Executes a request. If the request can change the run, the committed state contains its id during the execution.
     fn respond_and_commit(&mut self, request: ApiRequest) -> ApiResponse {
         let committed = self.committed.clone().filter(|state| {
             let id = request.stored_id();
@@ -271,7 +271,7 @@ fn internal_error(on_defect: OnDefect) -> ApiResponse {
     let mut answer = ApiResponse::invalid_request(
         ResponseStatus::Failed,
         "internal_error",
-        "an internal error occurred; everything confirmed before is saved, and the run continues",
+        "an internal error occurred; all actions confirmed before it are saved, and the run continues",
     );
     answer.body["defect_id"] = id.into();
     answer

@@ -60,7 +60,7 @@ impl<'a> ZipArchive<'a> {
         Some(ZipArchive { bytes, entries })
     }
 
-    /// Returns the file names in the order of the directory.
+    /// Returns the file names in the order of the archive's directory.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.entries.iter().map(|entry| entry.name.as_str())
     }
@@ -106,7 +106,7 @@ impl<'a> ZipArchive<'a> {
 }
 
 impl Entry {
-    /// Reads an entry of the directory. Also returns the offset of the next entry.
+    /// Reads an entry of the directory. Returns the entry, and the offset at which the next entry starts.
     fn read(bytes: &[u8], at: usize) -> Option<(Entry, usize)> {
         if !starts_with(bytes, at, ENTRY_SIGNATURE) {
             return None;
@@ -116,7 +116,8 @@ impl Entry {
         let extras = names + length(28)?;
         let end = extras + length(30)?;
         let name = bytes.get(names..extras)?;
-        // Sizes and offsets that are too large for their 32-bit fields are stored in the 64-bit extra field, in this order.
+        // Sizes and offsets that are too large for their 32-bit fields are stored in the 64-bit extra field, in this
+        // order.
         let mut large = extra_64(bytes.get(extras..end)?).chunks_exact(8);
         let mut field = |field: usize| -> Option<u64> {
             match u32_at(bytes, at + field)? {
@@ -167,7 +168,7 @@ impl Read for Frames<'_> {
     }
 }
 
-/// Returns the offset of the end record. The record stores the length of the comment that follows it.
+/// Returns the offset of the end record. It is followed by a comment, whose length it stores.
 fn end_record(bytes: &[u8]) -> Option<usize> {
     let last = bytes.len().checked_sub(END_RECORD_BYTES)?;
     let first = last.saturating_sub(usize::from(u16::MAX));

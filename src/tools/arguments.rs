@@ -15,12 +15,12 @@ use novamind_base::formatting::normalize_json_numbers;
 use novamind_world::identifiers::{Channel, Group, Plan};
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan};
 
-/// Arguments of a call with checked names. Null arguments are removed.
+/// The arguments of a call, with valid names and without null values.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arguments(Map<String, Value>);
 
 impl Arguments {
-    /// Checks the names of the arguments of a call. `numbers` fills the placeholders of error messages.
+    /// Checks the names of the arguments in a call. `numbers` fills the placeholders in error messages.
     ///
     /// # Errors
     /// `wrong_type` if the arguments are not an object; `unknown_argument` or `argument_missing` if an argument is
@@ -81,7 +81,7 @@ impl Arguments {
     /// Parses an argument with `reader`. Returns `None` if the argument was not given.
     ///
     /// # Errors
-    /// The errors of `reader`.
+    /// Returns the errors of `reader`.
     pub fn parse_argument<T>(
         &self,
         name: &'static str,
@@ -375,7 +375,7 @@ pub fn parse_per_channel_group(
 /// Serializes whole numbers without a decimal point, for fields that are integers in the released simulator.
 ///
 /// # Errors
-/// The serializer fails.
+/// Returns an error if the serializer fails.
 pub(super) fn serialize_whole_as_integer<T: Serialize, S: Serializer>(
     data: &T,
     serializer: S,

@@ -25,7 +25,8 @@ use super::{Arguments, PlannedCall, Rejection, Tool, ToolContext, ToolId, ToolKi
 use get_tool_documentation::GetToolDocumentation;
 use novamind_world::settings::Settings;
 
-/// A tool with JSON arguments and an [`Answer`]. Unlike [`Tool`], the trait has no associated types.
+/// A tool with JSON arguments and an [`Answer`]. Unlike [`Tool`], the trait has no associated types, so that one list
+/// can contain all tools.
 pub trait AnyTool: Sync {
     /// Returns the specification of the tool.
     fn spec(&self) -> &'static ToolSpec;
@@ -50,7 +51,7 @@ macro_rules! catalogue {
         /// The result of any tool. An answer is serialized like the result type of its tool.
         #[derive(Debug, Clone, PartialEq, Serialize)]
         #[serde(untagged)]
-        #[allow(missing_docs)] // Each is described by its `ToolSpec`.
+        #[allow(missing_docs)] // The `ToolSpec` of each tool describes its variant.
         pub enum Answer {
             $($tool(<$tool as Tool>::Answer)),*
         }
@@ -90,8 +91,8 @@ impl ToolId {
         matches!(self, ToolId::PythonExec | ToolId::RunScript)
     }
 
-    /// Returns whether requests for the tool can have an id, which prevents a retry from being executed twice. Reads
-    /// and scripts need no id, because repeating them changes nothing.
+    /// Returns whether a request for the tool can have an id, so that a retry of the request is not executed twice.
+    /// Reads and scripts need no id, because repeating them changes nothing.
     pub fn takes_request_id(self) -> bool {
         self.spec().kind != ToolKind::Read && !self.executes_code()
     }
@@ -125,7 +126,7 @@ pub fn find_code(code: &str) -> Option<&'static dyn AnyTool> {
     CATALOGUE.into_iter().find(|tool| tool.spec().code.eq_ignore_ascii_case(code.trim()))
 }
 
-/// Returns a text that lists all tools by module, one line per tool.
+/// Returns a text that lists all tools, one per line, grouped by module.
 pub fn list_by_module() -> String {
     let mut text = String::new();
     for module in ToolModule::ALL {

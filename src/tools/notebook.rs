@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::rejection::Rejection;
 use novamind_base::formatting::grouped_number;
 
-/// Maximum number of scripts in a run. The same maximum applies to calculations.
+/// Maximum number of scripts in a run. The same maximum applies separately to calculations.
 const MAX_ENTRIES: usize = 100;
 const MAX_CODE_BYTES: usize = 256 * 1024;
 const MAX_NAME_BYTES: usize = 200;
@@ -34,7 +34,7 @@ pub enum NotebookChange {
     Store {
         /// Section that stores the code.
         section: NotebookSection,
-        /// Name of the code.
+        /// Name under which the code is stored.
         name: String,
         /// SQL statements or Python code.
         code: String,
@@ -68,7 +68,7 @@ impl NamedStatements {
         self.names().into_iter().filter(|text| *text != name).collect()
     }
 
-    /// Returns the names with the stored code.
+    /// Returns all names, each with its code.
     pub fn entries(&self) -> &[(String, String)] {
         &self.0
     }

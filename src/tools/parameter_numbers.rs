@@ -1,7 +1,7 @@
 //! Numbers in documentation: each placeholder in braces names a parameter and is replaced with the current value.
 //!
-//! `{table.key}` is a parameter. `{info_level.2.cost}` is a parameter in a list of tables, whose entries are named by
-//! level, tier or id, otherwise by index from 0. A colon introduces the format:
+//! `{table.key}` is a parameter. `{info_level.2.cost}` is a parameter in a list of tables. An entry of the list is
+//! named by its level, tier or ID, or by its index from 0 if it has none of these. A colon introduces the format:
 //!
 //! * `%` percentage, `100` percentage without the sign,
 //! * `$` dollars, `,` thousands separators, `-` absolute value, `+1` value plus one,
@@ -36,14 +36,15 @@ impl ParameterNumbers {
     }
 
     fn collect_numbers(&mut self, path: &str, part: &Value) {
-        let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+        let child_path =
+            |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         match part {
             Value::Object(table) => {
-                table.iter().for_each(|(key, value)| self.collect_numbers(&below(key), value))
+                table.iter().for_each(|(key, value)| self.collect_numbers(&child_path(key), value))
             }
             Value::Array(list) => {
                 for (at, entry) in list.iter().enumerate() {
-                    self.collect_numbers(&below(&entry_name(entry).unwrap_or(at.to_string())), entry);
+                    self.collect_numbers(&child_path(&entry_name(entry).unwrap_or(at.to_string())), entry);
                 }
             }
             _ => {

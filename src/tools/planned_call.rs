@@ -12,18 +12,18 @@ use novamind_world::settings::SettingsChange;
 pub struct PlannedCall<A> {
     /// Command that the simulator executes.
     pub command: Command,
-    /// Change to the notebook.
+    /// Change to the notebook; `None` if the call leaves the notebook unchanged.
     pub notebook_change: Option<NotebookChange>,
     /// Settings row for the database, if it differs from the settings of the simulator.
     pub settings_row: Option<Value>,
-    /// Result of the call, or the steps that compute it.
+    /// Result of the call, or the function that computes it.
     pub reply: Reply<A>,
 }
 
-/// Function that builds a result from the resolved command. Returns `None` for a command of another kind.
+/// A function that builds a result from the resolved command. Returns `None` for a command of another kind.
 type AnswerBuilder<A> = Box<dyn FnOnce(&ResolvedCommand) -> Option<A>>;
 
-/// Result of a planned call.
+/// The result of a planned call.
 pub enum Reply<A> {
     /// A result that does not depend on random draws.
     Immediate(A),
@@ -42,7 +42,7 @@ pub struct Script {
     pub timeout_seconds: f64,
 }
 
-/// Exit code and output of a script.
+/// The exit code and output of a script.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ScriptOutput {
     /// Exit code; 0 if the script ran to its end.
@@ -120,7 +120,7 @@ impl<A> Reply<A> {
     /// Returns the result for a resolved command. `run` executes the script of the call, if the call has a script.
     ///
     /// # Errors
-    /// The rejection of the script.
+    /// Returns the rejection of the script.
     pub fn into_answer(
         self,
         resolved: &ResolvedCommand,

@@ -7,7 +7,7 @@ use serde::Serialize;
 /// The rejection of a tool call. A rejected call changes nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Rejection {
-    /// Rejection code for programs.
+    /// Code that programs can test, for example `wrong_type`.
     pub code: &'static str,
     /// Message that explains the error and names the valid values.
     pub message: String,
@@ -50,7 +50,7 @@ pub struct DealResults {
     pub results: Vec<DealResult>,
 }
 
-/// Result of a single deal.
+/// The result of a single deal.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum DealResult {
@@ -63,7 +63,7 @@ pub enum DealResult {
     },
     /// The deal failed.
     Failed {
-        /// Number of the customer, if the deal contains a number.
+        /// Customer number in the deal; absent if the deal contains no number.
         #[serde(skip_serializing_if = "Option::is_none")]
         customer_id: Option<i64>,
         /// Reason for the failure.
@@ -72,7 +72,7 @@ pub enum DealResult {
 }
 
 impl DealResult {
-    /// Returns the customer if the deal was sent.
+    /// Returns the customer number if the deal succeeded.
     pub fn sent_customer(&self) -> Option<u32> {
         match self {
             DealResult::Done { customer_id, .. } => Some(*customer_id),

@@ -6,7 +6,7 @@ use super::notebook::Notebook;
 use novamind_world::events::Reading;
 use novamind_world::params::Interface;
 
-/// Interface through which tools read data of the session.
+/// An interface through which tools read data of the session.
 pub trait SessionContext: Sync {
     /// Returns a description of a PMI reading in words.
     fn describe_economy(&self, reading: &Reading) -> String;
@@ -36,7 +36,7 @@ pub struct ColumnDocument {
     pub name: &'static str,
     /// Declared type of the column.
     pub kind: &'static str,
-    /// All possible values of the column, if they are few.
+    /// All possible values of the column if there are few; otherwise empty.
     pub values: &'static [String],
     /// Description of the column.
     pub description: &'static str,

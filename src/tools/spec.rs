@@ -13,11 +13,11 @@ pub const MAX_UNITS_PER_DAY: f64 = 1e15;
 pub struct ToolSpec {
     /// Identifier of the tool.
     pub id: ToolId,
-    /// Short code of three to five capitals, for example `PRC`.
+    /// Code of three to five capital letters, for example `PRC`.
     pub code: &'static str,
     /// Module of the client library that contains the tool.
     pub module: ToolModule,
-    /// Kind of the tool.
+    /// Kind of the tool, which determines whether a call can change the company.
     pub kind: ToolKind,
     /// Summary of the tool in one line.
     pub summary: &'static str,
@@ -39,7 +39,7 @@ pub struct ToolSpec {
     pub rejection_codes: &'static [&'static str],
     /// Fields of the tool's result.
     pub result_fields: &'static [ResultField],
-    /// Arguments of an example, as JSON.
+    /// Arguments of an example call, as JSON.
     pub example: &'static str,
 }
 
@@ -139,7 +139,7 @@ impl ToolKind {
         !matches!(self, ToolKind::Read | ToolKind::Engine)
     }
 
-    /// Returns the name of the kind in documentation.
+    /// Returns the name of the kind, as the documentation shows it.
     pub fn id(self) -> &'static str {
         match self {
             ToolKind::Setting => "setting",
@@ -170,7 +170,7 @@ pub enum EffectTiming {
 }
 
 impl EffectTiming {
-    /// Returns the description of the time in documentation.
+    /// Returns a short description of the time, as the documentation shows it.
     pub fn id(self) -> &'static str {
         match self {
             EffectTiming::NextDay => "next day",
@@ -190,11 +190,11 @@ pub struct Argument {
     pub name: &'static str,
     /// Second name of the argument, which older programs use.
     pub alias: Option<&'static str>,
-    /// Type of the argument.
+    /// Type of the argument, with the range of its numbers.
     pub kind: ArgumentKind,
     /// Whether a call without the argument is rejected, with `argument_missing` or a tool-specific code.
     pub required: bool,
-    /// Unit of the numbers in the argument.
+    /// Unit of the numbers in the argument; empty if they have no unit.
     pub unit: &'static str,
     /// Description of the argument.
     pub description: &'static str,
@@ -249,7 +249,7 @@ pub struct NumberRange {
     pub excludes_min: bool,
     /// Maximum of the range.
     pub max: f64,
-    /// Maximum magnitude of a number, to keep sums exact.
+    /// Maximum absolute value of a number in a new call, which keeps sums exact.
     pub magnitude_limit: f64,
 }
 
@@ -259,7 +259,7 @@ impl NumberRange {
         NumberRange { min: 0.0, excludes_min: false, max: f64::INFINITY, magnitude_limit: MAX_DOLLARS };
     /// Range of dollar amounts above 0.
     pub const ABOVE_ZERO: NumberRange = NumberRange { excludes_min: true, ..NumberRange::AT_LEAST_ZERO };
-    /// Range of units of at least 0.
+    /// Range of usage of at least 0, in units per day.
     pub const UNITS: NumberRange =
         NumberRange { magnitude_limit: MAX_UNITS_PER_DAY, ..NumberRange::AT_LEAST_ZERO };
     /// Range of shares from 0 to 1.
@@ -316,7 +316,7 @@ pub enum MapKey {
 }
 
 impl MapKey {
-    /// Returns the name of the key kind in documentation.
+    /// Returns the name of the key kind, as the documentation shows it.
     pub fn id(self) -> &'static str {
         match self {
             MapKey::Group => "group",

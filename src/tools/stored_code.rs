@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::notebook::{NamedStatements, NotebookChange, NotebookSection};
 use super::planned_call::PlannedCall;
 
-/// Name and code in the arguments of a call.
+/// A name and code in the arguments of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedCode {
     /// Name under which the code is stored.

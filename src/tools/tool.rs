@@ -12,9 +12,9 @@ use novamind_world::settings::Settings;
 
 /// A tool of the player.
 pub trait Tool: Sync {
-    /// Type of the parsed and checked arguments.
+    /// The type of the parsed and checked arguments.
     type Args;
-    /// Type of the result, which is serialized to the data of the response.
+    /// The type of the result, which is serialized to the data of the response.
     type Answer: Serialize;
 
     /// Returns the specification of the tool.

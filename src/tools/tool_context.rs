@@ -20,13 +20,13 @@ pub struct ToolContext<'a> {
 /// A post of an author other than the player.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct PublicPost {
-    /// Number of the post.
+    /// Number of the post, which is unique in the run.
     pub post: u32,
     /// Day on which the post was published.
     pub day: u32,
     /// Text of the post.
     pub content: String,
-    /// Number of the player's post, if this post is a comment.
+    /// Number of the player's post on which this post comments; `None` for other posts.
     pub own_post: Option<u32>,
     /// Group whose reaction a comment on the player's post expresses.
     #[serde(skip)]
@@ -34,7 +34,7 @@ pub struct PublicPost {
     /// Group of the author; `None` for the press.
     #[serde(skip)]
     pub written_by: Option<Group>,
-    /// Name of the author's profile.
+    /// Name of the author's profile; `None` for authors without a name.
     #[serde(skip)]
     pub profile: Option<Cow<'static, str>>,
 }

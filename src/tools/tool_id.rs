@@ -57,7 +57,7 @@ macro_rules! identifiers {
         )]
         #[serde(rename_all = "snake_case")]
         #[strum(serialize_all = "snake_case")]
-        #[allow(missing_docs)] // Each is described by its `ToolSpec`.
+        #[allow(missing_docs)] // The `ToolSpec` of each tool describes its variant.
         pub enum ToolId {
             $($tool),*
         }

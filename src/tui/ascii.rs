@@ -2,7 +2,7 @@
 
 use ratatui::buffer::Buffer;
 
-/// Replaces every character outside ASCII by a similar ASCII character.
+/// Replaces every non-ASCII character with a similar ASCII character.
 pub fn replace_non_ascii(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if !cell.symbol().is_ascii() {

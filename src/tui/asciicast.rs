@@ -18,7 +18,7 @@ pub struct Asciicast {
 }
 
 impl Asciicast {
-    /// Starts a recording of a window with a size in columns and rows.
+    /// Starts a recording of a window of the given size, in columns and rows.
     pub fn new((columns, rows): (u16, u16), title: &str) -> Asciicast {
         // The recording needs colors even if the terminal of this process has no colors.
         crossterm::style::force_color_output(true);
@@ -34,7 +34,7 @@ impl Asciicast {
         recording
     }
 
-    /// Adds a frame that is shown for a duration.
+    /// Adds a frame and the time for which it is shown.
     ///
     /// # Errors
     /// The frame cannot be written as terminal output.

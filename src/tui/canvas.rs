@@ -11,26 +11,26 @@ use unicode_width::UnicodeWidthStr;
 
 use super::theme::{Role, Theme};
 
-/// The number of a command, which the application defines.
+/// A command number. The application defines which command it stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CommandId(pub u16);
 
-/// The target of a click.
+/// What a click on an area does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Click {
-    /// A command to execute.
+    /// Executes a command.
     Command(CommandId),
-    /// A pane that receives the focus, by its number on the screen.
+    /// Focuses a pane, given by its number on the screen.
     Pane(usize),
-    /// A row of a pane, by the number of the pane and the number of the row.
+    /// Selects a row of a pane, given by the numbers of the pane and the row.
     Row(usize, usize),
 }
 
 /// A frame that is being drawn.
 pub struct Canvas<'a> {
-    /// Cells of the frame.
+    /// Cells into which the frame is drawn.
     pub buffer: &'a mut Buffer,
-    /// Colors by role.
+    /// Theme that defines the style of each role.
     pub theme: &'a Theme,
     /// Clickable areas of the frame. Later areas cover earlier areas.
     pub clicks: Vec<(Rect, Click)>,
@@ -38,15 +38,15 @@ pub struct Canvas<'a> {
     pub cursor: Option<Position>,
     /// Number of rows that the focused list shows, for paging.
     pub page_rows: u16,
-    /// Whether the focused pane fills the screen and other panes are not drawn.
+    /// Whether the focused pane fills the screen, so that other panes are not drawn.
     pub zoomed: bool,
-    /// Whether the data is outdated, which the border of every pane indicates.
+    /// Whether the data is outdated. The border of every pane indicates this.
     pub stale: bool,
-    /// Text that is shown in place of a chart without data.
+    /// Text that is shown instead of a chart if there is no data.
     pub empty_chart_text: &'static str,
-    /// Marker that is used to draw curves.
+    /// Characters for drawing curves.
     pub marker: Marker,
-    /// Breadcrumbs that are shown before the title of the focused pane.
+    /// Breadcrumbs, which are shown before the title of the focused pane.
     pub breadcrumbs: Vec<String>,
 }
 
@@ -98,12 +98,12 @@ impl<'a> Canvas<'a> {
         self.buffer.set_style(area, self.style(role));
     }
 
-    /// Draws text in one row, truncated with an ellipsis.
+    /// Draws text in one row. Text that does not fit ends with an ellipsis.
     pub fn draw_text(&mut self, area: Rect, text: &str, role: Role) {
         self.draw_aligned(area, text, role, Align::Left);
     }
 
-    /// Draws aligned text in one row, truncated with an ellipsis.
+    /// Draws aligned text in one row. Text that does not fit ends with an ellipsis.
     pub fn draw_aligned(&mut self, area: Rect, text: &str, role: Role, align: Align) {
         if area.is_empty() {
             return;
@@ -117,14 +117,14 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Draws a line of spans in one row, truncated with an ellipsis.
+    /// Draws spans in one row. Text that does not fit ends with an ellipsis.
     pub fn draw_line(&mut self, area: Rect, line: &Line<'_>) {
         let area = Rect { height: area.height.min(1), ..area }.intersection(self.buffer.area);
         if area.is_empty() {
             return;
         }
         self.buffer.set_line(area.x, area.y, line, area.width);
-        // Spaces at the end align columns and may be cut without a mark.
+        // Trailing spaces only align columns, so they may be cut without an ellipsis.
         let text: String = line.spans.iter().map(|span| span.content.as_ref()).collect();
         if text.trim_end().width() > area.width as usize {
             let kept = truncate_to_width(&text, area.width as usize).width().max(1) as u16;
@@ -135,15 +135,16 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Draws lines below each other, each truncated with an ellipsis. Lines that do not fit are omitted.
+    /// Draws lines below each other. Lines that are too wide end with an ellipsis, and lines below the area are
+    /// omitted.
     pub fn draw_lines(&mut self, area: Rect, lines: &[Line<'_>]) {
         for (row, line) in row_rects(area).zip(lines) {
             self.draw_line(row, line);
         }
     }
 
-    /// Draws the border of a pane and returns the area inside. The title is at the left end and the note at the right
-    /// end of the upper border.
+    /// Draws the border of a pane and returns the area inside. The upper border has the title at its left end and the
+    /// note at its right end.
     pub fn draw_pane_frame(&mut self, area: Rect, title: &str, note: &str, focused: bool) -> Rect {
         // The line style shows the focus even without color.
         let (kind, role) =
@@ -157,7 +158,7 @@ impl<'a> Canvas<'a> {
         };
         let way = if focused && !title.is_empty() { self.breadcrumbs.as_slice() } else { &[] };
         let in_room = |room: usize| breadcrumb_prefix(way, title, room);
-        // The last breadcrumb takes precedence over the note.
+        // The last breadcrumb has priority over the note.
         let path = Some(in_room(room.saturating_sub(note.width() + 6)))
             .filter(|path| !path.is_empty())
             .unwrap_or_else(|| in_room(room.saturating_sub(2)));
@@ -192,15 +193,15 @@ impl<'a> Canvas<'a> {
         self.draw_text(Rect { width: width.min(row.width), ..row }, &shown, Role::Text);
     }
 
-    /// Returns the first visible row of a list, chosen so that the selected row is near the middle, and draws the marks
-    /// of [`Canvas::draw_scroll_marks`].
+    /// Returns the first visible row of a list, chosen so that the selected row is near the middle. Also draws the
+    /// marks of [`Canvas::draw_scroll_marks`].
     pub fn scroll_to_row(&mut self, list: Rect, selected: usize, rows: usize) -> usize {
         let from = first_visible_row(selected, list.height as usize, rows);
         self.draw_scroll_marks(list, from, rows);
         from
     }
 
-    /// Draws arrows at the right border of a list if rows above or below are not visible.
+    /// Draws an arrow at the right border of a list for rows that are not visible above, and another for those below.
     pub fn draw_scroll_marks(&mut self, list: Rect, first: usize, rows: usize) {
         if list.is_empty() {
             return;
@@ -212,7 +213,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws arrows in the headings of a matrix if columns to the left or to the right are not visible. `names` is the
-    /// width of the first column.
+    /// width of the first column, which is always visible.
     pub fn draw_column_marks(&mut self, head: Rect, names: u16, before: bool, after: bool) {
         if before && names < head.width {
             self.draw_text(Rect { x: head.x + names, width: 1, ..head }, "←", Role::Key);
@@ -222,19 +223,19 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Draws a mark next to the right end of a row, on the border or in a gap. If there is neither, the mark covers the
-    /// end of the row.
+    /// Draws a mark to the right of a row, on the border or in a gap. If the row has neither, the mark covers its last
+    /// cell.
     fn draw_mark_beside(&mut self, row: Rect, mark: &str) {
         let style = self.style(Role::Key);
-        let beside = Position::new(row.right(), row.y);
-        let is_free = self.buffer.cell(beside).is_some_and(|cell| " │┃".contains(cell.symbol()));
-        let place = if is_free { beside } else { Position::new(row.right() - 1, row.y) };
+        let right_of_row = Position::new(row.right(), row.y);
+        let is_free = self.buffer.cell(right_of_row).is_some_and(|cell| " │┃".contains(cell.symbol()));
+        let place = if is_free { right_of_row } else { Position::new(row.right() - 1, row.y) };
         if let Some(cell) = self.buffer.cell_mut(place) {
             cell.set_symbol(mark).set_style(style);
         }
     }
 
-    /// Draws the position of a pane among the panes that share its area into the lower border, if the border has space.
+    /// Draws the position of a pane among the panes that share its area (`pane 2 of 3`), if the lower border has space.
     pub fn draw_stack_mark(&mut self, area: Rect, at: usize, panes: usize) {
         let mark = format!(" pane {} of {panes} ", at + 1);
         let width = mark.width() as u16;
@@ -254,8 +255,8 @@ impl<'a> Canvas<'a> {
     }
 }
 
-/// Formats the breadcrumbs before a title in the available width: `Customers › S2 › `. The first breadcrumbs are
-/// dropped first. The last breadcrumb is omitted if the title contains it.
+/// Formats the breadcrumbs before a title: `Customers › S2 › `. If the width is too small, omits breadcrumbs, starting
+/// with the first. Also omits the last breadcrumb if the title contains it.
 fn breadcrumb_prefix(path: &[String], title: &str, room: usize) -> String {
     let is_in_title = path.last().is_some_and(|last| title.split(' ').any(|word| word == last));
     let path = &path[..path.len() - usize::from(is_in_title)];
@@ -298,8 +299,8 @@ pub fn first_visible_row(selected: usize, height: usize, rows: usize) -> usize {
     selected.saturating_sub(height / 2).min(rows.saturating_sub(height))
 }
 
-/// Truncates text to a width with an ellipsis, between graphemes. A number is either complete or omitted, so that no
-/// digits of a larger number are shown.
+/// Truncates text to a width, between graphemes, and adds an ellipsis. A number is shown completely or not at all, so
+/// that its first digits are not mistaken for a smaller number.
 pub fn truncate_to_width(text: &str, width: usize) -> String {
     if text.width() <= width && !text.contains(|letter: char| letter.is_control()) {
         return text.to_owned();
@@ -325,7 +326,7 @@ pub fn truncate_to_width(text: &str, width: usize) -> String {
     fitted
 }
 
-/// Returns the text without a number at its end, which may be incomplete.
+/// Returns the text without the number at its end, because this number may be incomplete.
 fn without_last_number(text: &str) -> &str {
     let digits = text.trim_end_matches(['k', 'M', 'B', '%', '.', ',', '$', '+', '-', '±']);
     if !digits.ends_with(|letter: char| letter.is_ascii_digit()) {

@@ -112,7 +112,7 @@ impl Chord {
         matches!(self.code, KeyCode::Char(_)) && !self.ctrl && !self.alt
     }
 
-    /// Returns whether the chord can start a number.
+    /// Returns whether the chord can be the first key of a number.
     pub fn starts_number(&self) -> bool {
         matches!(self.code, KeyCode::Char(letter) if letter.is_ascii_digit() || matches!(letter, '$' | '.' | '-'))
             && !self.ctrl
@@ -139,7 +139,7 @@ impl Chord {
         )
     }
 
-    /// Returns whether a text field or an editor handles the chord.
+    /// Returns whether text fields and editors handle the chord.
     pub fn is_text_input(&self) -> bool {
         match self.code {
             KeyCode::Char(_) => !self.ctrl && !self.alt,

@@ -46,34 +46,35 @@ pub fn frame_text(buffer: &Buffer) -> String {
 }
 
 /// Returns a frame as a self-contained SVG picture.
-pub fn frame_svg(buffer: &Buffer, paper: TerminalColors) -> String {
+pub fn frame_svg(buffer: &Buffer, colors: TerminalColors) -> String {
     let width = f64::from(buffer.area.width) * CELL_WIDTH + 2.0 * MARGIN;
     let height = f64::from(buffer.area.height) * CELL_HEIGHT + 2.0 * MARGIN;
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
          height=\"{height:.0}\" font-family=\"'DejaVu Sans Mono','Cascadia Mono','Menlo','Consolas',monospace\" \
          font-size=\"14\" xml:space=\"preserve\">\n<rect width=\"100%\" height=\"100%\" rx=\"8\" fill=\"{}\"/>\n",
-        paper.background
+        colors.background
     );
     for y in 0..buffer.area.height {
-        draw_row(&mut out, buffer, y, paper);
+        draw_row(&mut out, buffer, y, colors);
     }
     out.push_str("</svg>\n");
     out
 }
 
-fn draw_row(out: &mut String, buffer: &Buffer, y: u16, paper: TerminalColors) {
+fn draw_row(out: &mut String, buffer: &Buffer, y: u16, colors: TerminalColors) {
     let cells: Vec<&Cell> = (0..buffer.area.width).map(|x| &buffer[(x, y)]).collect();
     let mut from = 0;
     for same in cells.chunk_by(|left, right| left.style() == right.style()) {
-        draw_cell_run(out, (from, y), same, paper);
+        draw_cell_run(out, (from, y), same, colors);
         from += same.len();
     }
 }
 
-/// Draws consecutive cells of a row that have the same style: their background, characters drawn as paths, and text.
-fn draw_cell_run(out: &mut String, (x, y): (usize, u16), cells: &[&Cell], paper: TerminalColors) {
-    let (ink, ground) = cell_colors(cells[0], paper);
+/// Draws consecutive cells of a row that have the same style: first the background, then characters that are drawn as
+/// paths, then text.
+fn draw_cell_run(out: &mut String, (x, y): (usize, u16), cells: &[&Cell], colors: TerminalColors) {
+    let (ink, ground) = cell_colors(cells[0], colors);
     let place = |column: usize| MARGIN + (x + column) as f64 * CELL_WIDTH;
     let top = MARGIN + f64::from(y) * CELL_HEIGHT;
     // Writing to a string cannot fail.
@@ -124,12 +125,12 @@ fn write_word(out: &mut String, (left, top): (f64, f64), word: &str, (ink, modif
     );
 }
 
-/// Returns the foreground color of a cell, and the background color if the cell does not have the default background.
-fn cell_colors(cell: &Cell, paper: TerminalColors) -> (String, Option<String>) {
-    let ink = css_color(cell.fg).unwrap_or_else(|| paper.foreground.to_owned());
+/// Returns the foreground color of a cell, and its background color unless this is the default background.
+fn cell_colors(cell: &Cell, colors: TerminalColors) -> (String, Option<String>) {
+    let ink = css_color(cell.fg).unwrap_or_else(|| colors.foreground.to_owned());
     let ground = css_color(cell.bg);
     if cell.modifier.contains(Modifier::REVERSED) {
-        (ground.unwrap_or_else(|| paper.background.to_owned()), Some(ink))
+        (ground.unwrap_or_else(|| colors.background.to_owned()), Some(ink))
     } else {
         (ink, ground)
     }

@@ -1,4 +1,4 @@
-//! Fuzzy search: finds entries by parts of their names, the best match first.
+//! Fuzzy search: finds entries from parts of their names and returns the best matches first.
 
 use nucleo_matcher::pattern::{CaseMatching, Normalization, Pattern};
 use nucleo_matcher::{Config, Matcher, Utf32Str};
@@ -9,10 +9,10 @@ use unicode_width::UnicodeWidthStr;
 use super::canvas::Canvas;
 use super::theme::Role;
 
-/// A match: the index of the entry, and the positions of the matched letters in the entry's title.
+/// A match: the index of the entry, and the positions of the matched letters in its title.
 pub type FuzzyMatch = (usize, Vec<u32>);
 
-/// Returns the matching entries, the best first. Matches in titles rank higher than matches in explanations. If the
+/// Returns the matching entries, best match first. Matches in titles rank higher than matches in explanations. If the
 /// search text is empty, returns all entries in their original order.
 pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<FuzzyMatch> {
     let pattern = Pattern::parse(typed, CaseMatching::Smart, Normalization::Smart);
@@ -32,8 +32,8 @@ pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> V
     scored.into_iter().map(|(_, at, places)| (at, places)).collect()
 }
 
-/// Draws the title of an entry with highlighted matched letters. If the matched letters do not fit, the beginning of the
-/// title is omitted.
+/// Draws the title of an entry and highlights the matched letters. If the matched letters do not fit, omits the
+/// beginning of the title.
 pub fn draw_title(canvas: &mut Canvas<'_>, area: Rect, title: &str, letters: &[u32], roles: [Role; 2]) {
     let graphemes: Vec<&str> = title.graphemes(true).collect();
     let from = first_shown_grapheme(&graphemes, letters, area.width as usize);
@@ -58,7 +58,8 @@ pub fn draw_title(canvas: &mut Canvas<'_>, area: Rect, title: &str, letters: &[u
     }
 }
 
-/// Returns the first grapheme to show so that the last matched letter is visible, with room for an ellipsis at each end.
+/// Returns the first grapheme to show, so that the last matched letter is visible and there is room for an ellipsis at
+/// each end.
 fn first_shown_grapheme(graphemes: &[&str], letters: &[u32], width: usize) -> usize {
     let columns =
         |range: std::ops::Range<usize>| graphemes[range].iter().map(|letter| letter.width()).sum::<usize>();

@@ -16,7 +16,7 @@ pub enum Glyphs {
 }
 
 impl Glyphs {
-    /// Returns the next set of characters, cyclically.
+    /// Returns the next set of characters, and the first set after the last.
     pub fn next(self) -> Glyphs {
         match self {
             Glyphs::Braille => Glyphs::Blocks,
@@ -25,7 +25,7 @@ impl Glyphs {
         }
     }
 
-    /// Returns the marker that is used to draw curves.
+    /// Returns the marker for drawing curves.
     pub fn marker(self) -> Marker {
         match self {
             Glyphs::Braille => Marker::Braille,
@@ -34,7 +34,7 @@ impl Glyphs {
         }
     }
 
-    /// Returns the name of the set for messages.
+    /// Returns the name that messages use for the set.
     pub fn label(self) -> &'static str {
         match self {
             Glyphs::Braille => "braille dots",

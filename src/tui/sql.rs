@@ -8,22 +8,22 @@ use crate::theme::Role;
 /// The kind of a SQL token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TokenKind {
-    /// A keyword.
+    /// One of [`KEYWORDS`], in upper or lower case.
     Keyword,
     /// A plain or quoted identifier.
     Identifier,
     /// A string in single quotes.
     StringLiteral,
-    /// A number.
+    /// A number, possibly incomplete.
     Number,
-    /// A comment.
+    /// A comment of one or several lines.
     Comment,
     /// Any other character that is not white space.
     Symbol,
 }
 
 impl TokenKind {
-    /// Returns the display role of the token kind.
+    /// Returns the role that determines the color of the token.
     pub fn role(self) -> Role {
         match self {
             TokenKind::Keyword => Role::Keyword,
@@ -38,7 +38,7 @@ impl TokenKind {
 /// A SQL token with its byte range.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Token {
-    /// The kind of the token.
+    /// What the token is, which determines its color.
     pub kind: TokenKind,
     /// The byte range of the token in the text.
     pub range: Range<usize>,
@@ -155,7 +155,7 @@ pub fn is_identifier_char(letter: char) -> bool {
     letter.is_alphanumeric() || letter == '_'
 }
 
-/// Splits a text into SQL tokens without whitespace.
+/// Splits a text into SQL tokens and skips whitespace.
 pub fn tokenize(sql: &str) -> Vec<Token> {
     let mut found = Vec::new();
     let mut at = 0;
@@ -190,7 +190,7 @@ pub fn tokenize(sql: &str) -> Vec<Token> {
     found
 }
 
-/// Returns the length of a quoted token. A doubled quote does not end the token.
+/// Returns the length in bytes of a quoted token. A doubled quote does not end the token.
 fn quoted_length(rest: &str, quote: char) -> usize {
     let mut at = 1;
     while let Some(end) = rest[at..].find(quote) {
@@ -203,8 +203,8 @@ fn quoted_length(rest: &str, quote: char) -> usize {
     rest.len()
 }
 
-/// Returns the length of a number token, which can contain digits, letters, a decimal point and an exponent with a
-/// sign.
+/// Returns the length in bytes of a number token, which can contain digits, letters, a decimal point and an exponent
+/// with a sign.
 fn number_length(rest: &str) -> usize {
     let mut before = ' ';
     let part_of = |letter: char| {
@@ -216,9 +216,9 @@ fn number_length(rest: &str) -> usize {
     rest.find(|letter| !part_of(letter)).unwrap_or(rest.len())
 }
 
-/// Returns the range of the statement at a position without its final semicolon, the index of the statement, and the
-/// number of statements. A position after the last semicolon belongs to the last statement if no further statement
-/// follows.
+/// Returns the range of the statement at a byte position (excluding its final semicolon), the index of the statement,
+/// and the number of statements. A position after the last semicolon belongs to the last statement unless another
+/// statement follows.
 pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
     let pieces = tokenize(sql);
     let ends =

@@ -24,7 +24,7 @@ pub struct TerminalScreen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
 }
 
-/// Settings of the terminal, such as echo and line mode, in the format of `stty -g`. `None` if they are unknown.
+/// Settings of the terminal, such as echo and line mode, in the format of `stty -g`. `None` if `stty` cannot read them.
 #[cfg(unix)]
 pub struct TerminalSettings(Option<String>);
 
@@ -37,7 +37,7 @@ impl TerminalSettings {
         TerminalSettings(output.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()))
     }
 
-    /// Restores the settings, because a program that was killed can leave the terminal without echo.
+    /// Restores the settings, because a killed program can leave the terminal without echo.
     pub fn restore(&self) {
         if let Some(settings) = &self.0 {
             // Errors are ignored, because the terminal may be closed already.
@@ -50,7 +50,7 @@ impl TerminalSettings {
 /// Line that is printed after the message of a panic.
 static PANIC_NOTE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Sets the line that is printed after the message of a panic, for example the location of the user's saved work.
+/// Sets the line that is printed after the message of a panic, such as the location of the user's saved work.
 pub fn set_panic_note(note: Option<String>) {
     *PANIC_NOTE.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = note;
 }
@@ -89,7 +89,7 @@ impl TerminalScreen {
         self.resume(mouse)
     }
 
-    /// Leaves the terminal to another program. Returns the settings for [`TerminalScreen::reclaim`].
+    /// Hands the terminal over to another program. Returns the settings for [`TerminalScreen::reclaim`].
     #[cfg(unix)]
     pub fn release(&mut self) -> TerminalSettings {
         restore_terminal();
@@ -102,7 +102,7 @@ impl TerminalScreen {
     /// The terminal cannot be prepared.
     #[cfg(unix)]
     pub fn reclaim(&mut self, settings: &TerminalSettings, mouse: bool) -> io::Result<()> {
-        // The settings are restored first, so that they also apply after this program has ended.
+        // Restore the settings first, so that they also apply after this program has ended.
         settings.restore();
         self.resume(mouse)
     }
@@ -114,7 +114,7 @@ impl TerminalScreen {
     /// The terminal cannot be prepared.
     #[cfg(unix)]
     pub fn resume(&mut self, mouse: bool) -> io::Result<()> {
-        // Raw mode must be disabled first. While the library considers raw mode enabled, enabling it has no effect.
+        // Disable raw mode first: while the library considers raw mode enabled, enabling it has no effect.
         let _ = disable_raw_mode();
         enter_console_mode()?;
         self.set_mouse_capture(mouse);
@@ -140,13 +140,13 @@ impl TerminalScreen {
     /// # Errors
     /// Writing to the terminal fails.
     pub fn clear(&mut self) -> io::Result<()> {
-        // The clear function of the library is not used. The function would request the cursor position, but the
-        // thread that reads keys would receive the answer.
+        // The library's function for clearing would request the cursor position, and the thread that reads keys would
+        // receive the answer.
         let size = self.terminal.size()?;
         self.terminal.resize(size.into())
     }
 
-    /// Captures the mouse, or leaves the mouse to the terminal for selecting text.
+    /// Captures the mouse, or releases it so that the terminal can select text.
     pub fn set_mouse_capture(&mut self, taken: bool) {
         // Terminals without a mouse ignore the escape sequence.
         let _ = match taken {
@@ -155,7 +155,7 @@ impl TerminalScreen {
         };
     }
 
-    /// Copies text to the clipboard, if the terminal permits it.
+    /// Copies text to the clipboard if the terminal permits this.
     pub fn copy_to_clipboard(&mut self, text: &str) {
         // Terminals without a clipboard ignore the escape sequence. Errors are ignored, because the text is also on the
         // screen.
@@ -175,7 +175,7 @@ fn enter_console_mode() -> io::Result<()> {
     execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste, EnableFocusChange, EnableMouseCapture)
 }
 
-/// Restores the terminal and ends the program as SIGQUIT does by default, with a core dump. Does not need the main
+/// Restores the terminal and ends the program with a core dump, as SIGQUIT does by default. Does not need the main
 /// thread, so that it also ends a program that hangs.
 #[cfg(unix)]
 pub fn quit_with_core_dump() {

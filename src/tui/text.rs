@@ -42,8 +42,8 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// Wraps sentences to a width and a number of lines. Text that does not fit is cut after a sentence and marked. If not
-/// even the first sentence fits, the first sentence is cut.
+/// Wraps sentences to a width and a number of lines. Text that does not fit is cut after a sentence and marked. If even
+/// the first sentence does not fit, it is cut.
 pub fn wrap_sentences(text: &str, width: usize, lines: usize) -> Vec<String> {
     let all = wrap(text, width);
     if all.len() <= lines {
@@ -83,7 +83,7 @@ pub fn format_number(value: f64) -> String {
     grouped_number(value, decimals)
 }
 
-/// Returns the first wording that fits into a width, otherwise the last wording.
+/// Returns the first wording that fits into a width, or the last wording if none fits.
 pub fn first_fitting(wordings: impl IntoIterator<Item = String>, width: usize) -> String {
     let mut last = String::new();
     for wording in wordings {

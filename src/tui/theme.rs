@@ -6,9 +6,9 @@ use serde::Deserialize;
 /// The role of a text or symbol on the screen, which determines its style.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// Ordinary text.
+    /// Text that has no special role.
     Text,
-    /// Less important text.
+    /// Text that is less important than the text around it.
     Dim,
     /// Emphasized text.
     Strong,
@@ -32,7 +32,7 @@ pub enum Role {
     Good,
     /// Deteriorations, unfavorable values and errors.
     Bad,
-    /// Text that requires attention.
+    /// Values and messages that require attention.
     Warning,
     /// Column headings.
     Header,
@@ -40,9 +40,9 @@ pub enum Role {
     Field,
     /// Values that differ from the current setting.
     Changed,
-    /// Series of a chart, by number.
+    /// Series of a chart, by index. The colors repeat after the last color of the theme.
     Series(usize),
-    /// Forecast intervals.
+    /// Forecast ranges in charts.
     Fan,
     /// SQL keywords.
     Keyword,
@@ -110,7 +110,7 @@ struct ThemeFile {
 /// A color theme: the styles of all roles.
 #[derive(Debug, Clone)]
 pub struct Theme {
-    /// Name of the theme.
+    /// Name of the theme file, without extension.
     pub name: String,
     styles: ThemeFile,
 }
@@ -134,7 +134,7 @@ impl Theme {
         Ok(Theme { name: name.to_owned(), styles: role_styles })
     }
 
-    /// Returns whether `count` series can be distinguished by color alone.
+    /// Returns whether `count` series have different colors, so that they can be distinguished by color alone.
     pub fn has_distinct_series_colors(&self, count: usize) -> bool {
         let colours = || (0..count).map(|number| self.style(Role::Series(number)).fg);
         colours()
@@ -188,7 +188,7 @@ mod tests {
             assert_eq!((mono.style(role).fg, mono.style(role).bg), (None, None));
         }
         assert!(!mono.has_distinct_series_colors(2));
-        // These colors equal the background in many dark or light terminal palettes, so no text uses them.
+        // These colors equal the background in many terminal palettes, dark or light, so no text uses them.
         for (name, invisible) in [("dark", Color::DarkGray), ("light", Color::Gray)] {
             let theme = Theme::bundled(name).expect(name);
             for role in [Role::Text, Role::Dim, Role::Tab, Role::Key, Role::Header, Role::Comment] {

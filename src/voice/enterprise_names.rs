@@ -61,8 +61,8 @@ impl EnterpriseNames {
         }
     }
 
-    /// Returns the name of an enterprise with the customer number that tool calls and SQL use, for example `Northgate
-    /// Ashwick #16064`.
+    /// Returns the name of an enterprise, followed by the customer number that tool calls and SQL use, for example
+    /// `Northgate Ashwick #16064`.
     pub fn name_with_number(&self, customer: u32) -> String {
         format!("{} #{customer}", self.name(customer))
     }
@@ -135,11 +135,12 @@ mod tests {
     #[test]
     fn enterprise_name_is_stable() {
         assert_eq!(names(42).name(16_064), names(42).name(16_064));
-        let of_seed = |seed: u64| {
+        let names_in_run = |seed: u64| {
             let names = names(seed);
             (1..200).map(|customer| names.name(customer)).collect::<Vec<_>>()
         };
-        let same = of_seed(42).iter().zip(of_seed(7)).filter(|(one, other)| **one == *other).count();
+        let same =
+            names_in_run(42).iter().zip(names_in_run(7)).filter(|(one, other)| **one == *other).count();
         assert!(same < 5, "{same} of 199 have the same name in two runs");
         assert_eq!(names(42).name_with_number(16_064), format!("{} #16064", names(42).name(16_064)));
         // Users recognize enterprises by their names, and a change to the word lists would rename all enterprises.

@@ -24,7 +24,7 @@ use std::fmt;
 
 pub use polish::polish;
 
-/// The values and tags with which a text is expanded.
+/// The values and tags that are available to the expansion of a rule.
 #[derive(Debug, Clone, Default)]
 pub struct Context {
     values: BTreeMap<&'static str, String>,
@@ -75,7 +75,7 @@ impl Context {
 #[derive(Debug, Clone)]
 pub struct Grammar {
     rules: BTreeMap<String, Vec<Alternative>>,
-    /// Declared names, which tests compare with the names of a context.
+    /// Names of all declared values and tags. Tests compare them with the names of a context.
     #[cfg(test)]
     known: BTreeSet<String>,
 }
@@ -106,7 +106,7 @@ enum Part {
     Rule(String),
     /// Name of a value of the context.
     Value(String),
-    /// A rule whose name ends in a value of the context.
+    /// The rule `rule.VALUE`, where `VALUE` is the value named `by`; the rule `rule` if that rule does not exist.
     ByValue {
         rule: String,
         by: String,

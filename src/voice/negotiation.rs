@@ -3,8 +3,8 @@
 //!
 //! A message consists of an opening, a core with the facts, and an ending that fits the decision style of the
 //! enterprise. The number of the message selects the pair of opening and core. The stride between consecutive messages
-//! is coprime to the number of pairs, so a pair repeats only after all other pairs. Every situation has more than
-//! sixty pairs. A message reveals nothing that the offers and the profile do not show.
+//! is coprime to the number of pairs, so a pair repeats only after all other pairs have been used. Every situation has
+//! more than sixty pairs. A message reveals nothing that the offers and the profile do not show.
 
 mod phrases;
 
@@ -18,7 +18,7 @@ use novamind_world::events::{ThreadTurn, TurnContent};
 use novamind_world::identifiers::Group;
 use novamind_world::params::Personas;
 
-/// Step from the pair of opening and core of one message to the pair of the next message.
+/// Distance between the pairs of consecutive messages in the list of all pairs of opening and core.
 const STRIDE: u32 = 31;
 
 /// Gaps between offered and asked price, as shares of the offered price. A gap below the first value is near; a gap
@@ -128,7 +128,7 @@ impl<'a> EnterpriseProfile<'a> {
     }
 }
 
-/// Decision style of an enterprise.
+/// The decision style of an enterprise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(usize)]
 enum DecisionStyle {
@@ -140,7 +140,7 @@ enum DecisionStyle {
 }
 
 impl DecisionStyle {
-    /// Returns the decision style for the words of a profile.
+    /// Returns the decision style that the words of a profile describe.
     fn from_words(decision: &str) -> DecisionStyle {
         let has = |words: &[&str]| words.iter().any(|word| decision.contains(word));
         if has(&["committee-light", "fast", "quick", "pragmatic", "field-tested"]) {

@@ -12,7 +12,7 @@ pub struct NoticeCustomer {
     pub customer: u32,
     /// Group of the enterprise.
     pub group: Group,
-    /// Number of whole seats of the enterprise.
+    /// Number of seats of the enterprise, in whole seats.
     pub seats: u32,
 }
 
@@ -88,7 +88,7 @@ fn preview(content: &str, posts: &CeoPosts) -> String {
     preview
 }
 
-/// Returns the text of the notice about a post of the player under release 2: views and start of the post.
+/// Returns the release 2 text of the notice about a post of the player: views and start of the post.
 pub fn views_text(content: &str, views: u64, posts: &CeoPosts) -> String {
     let (views, preview) = (grouped_number(views as f64, 0), preview(content, posts));
     format!(
@@ -96,7 +96,8 @@ pub fn views_text(content: &str, views: u64, posts: &CeoPosts) -> String {
     )
 }
 
-/// Returns the text of the notice about a post of the player: views, start of the post, tone and strongest reactions.
+/// Returns the text of the notice about a post of the player: views, start of the post, tone of the reaction, and
+/// strongest reactions by group.
 pub fn reaction_text(content: &str, reaction: &Reaction, posts: &CeoPosts) -> String {
     let preview = preview(content, posts);
     let tone = match reaction.mean {

@@ -40,7 +40,7 @@ pub(super) fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("an unknown reason").to_owned()
 }
 
-/// Locks a cache. Resets the cache if a panic may have left it inconsistent.
+/// Locks a cache. Replaces its content with the default if a panic may have left it inconsistent.
 pub(super) fn lock_cache<T: Default>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
     kept.lock().unwrap_or_else(|poisoned| {
         let mut guard = poisoned.into_inner();

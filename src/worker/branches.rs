@@ -17,26 +17,26 @@ use novamind_record::trajectory::record::DetachCause;
 use novamind_session::{Access, Session};
 use novamind_tools::Rejection;
 
-/// A question about changed decisions of the open run.
+/// A question about alternatives to the recorded decisions of the open run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BranchesQuestion {
-    /// List the decisions that can be changed, with the settings before them.
+    /// List the decisions that an alternative can change, each with the settings before it.
     Decisions,
-    /// Check the edits of an alternative without simulating it.
+    /// Check whether the edits of an alternative can be simulated. Does not simulate them.
     Check {
         /// First week in which the alternative differs from the recorded decisions.
         week: u32,
-        /// The decision edits of the alternative.
+        /// Changes of the recorded decisions in this alternative.
         edits: Vec<DecisionEdit>,
     },
-    /// Compare alternatives that differ from the recorded decisions in one week and all later weeks. If `futures` is
-    /// set, also simulate the branches with new random draws.
+    /// Compare alternatives that differ from the recorded decisions from `week` on. If `futures` is set, also simulate
+    /// each branch with new random draws.
     Compare {
         /// First week in which the alternatives differ from the recorded decisions.
         week: u32,
-        /// The decision edits of each alternative.
+        /// The decision edits, one list per alternative.
         alternatives: Vec<Vec<DecisionEdit>>,
-        /// Number of futures per branch; `None` for no futures.
+        /// Number of futures per branch; `None` if futures are not simulated.
         futures: Option<u32>,
     },
 }
@@ -44,9 +44,9 @@ pub enum BranchesQuestion {
 /// The answer to a [`BranchesQuestion`].
 #[derive(Debug, Clone)]
 pub enum BranchesAnswer {
-    /// The recorded decisions of the run.
+    /// The recorded decisions, which alternatives modify.
     Decisions(Box<DecisionHistory>),
-    /// The rejection of each checked edit, or `None` for an edit that can be simulated.
+    /// For each checked edit, its rejection, or `None` if the edit can be simulated.
     Checked(Vec<Option<Rejection>>),
     /// The compared branches, and the futures if they were requested.
     Compared(Box<BranchComparison>, Option<Box<Futures>>),
@@ -54,7 +54,7 @@ pub enum BranchesAnswer {
 
 impl Question for BranchesQuestion {
     type Answer = BranchesAnswer;
-    /// Number of simulated days, and number of all days to simulate.
+    /// Days simulated so far, and total days to simulate, over all branches.
     type Progress = (usize, usize);
 
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
@@ -78,7 +78,7 @@ impl Question for BranchesQuestion {
 }
 
 impl SessionThread {
-    /// Creates a branch that keeps the recorded decisions except for some edits, and opens the branch.
+    /// Creates a branch with the recorded decisions as changed by `edits`, and opens the branch.
     pub(super) fn adopt_branch(&mut self, week: u32, edits: &[DecisionEdit]) {
         let Some(open) = &mut self.active_run else { return };
         let mode = open.session().manifest().mode.branch_mode();

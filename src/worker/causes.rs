@@ -14,9 +14,9 @@ use novamind_tools::Rejection;
 /// A question about the causes of a figure's change in a week.
 #[derive(Debug, Clone)]
 pub struct CausesQuestion {
-    /// The figure that changed.
+    /// Weekly figure whose change is explained.
     pub quantity: WeekQuantity,
-    /// The week in which the figure changed.
+    /// The week, counted from 1, that is compared with the week before.
     pub week: u32,
 }
 

@@ -11,7 +11,8 @@ use novamind_report::class::{ClassDisplayOptions, ClassView};
 use novamind_session::{Access, Session};
 
 impl SessionThread {
-    /// Reads a collected class. Reports an error if data for the requested display is missing.
+    /// Reads a collected class for display. Reports an error if the requested display needs data that the class does
+    /// not have.
     pub(super) fn read_class(&self, folder: &Path, display_options: ClassDisplayOptions) {
         let read = CollectedClass::read(&expand_home(folder)).map_err(|error| error.to_string());
         let checked = read.and_then(|class| {

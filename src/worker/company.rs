@@ -31,7 +31,7 @@ use novamind_tools::{
 /// The data that the screens display about the company. Hidden values are included only after an inspection.
 #[derive(Debug, Clone)]
 pub struct DisplayedCompany {
-    /// Summary of the company.
+    /// What the player can observe about the run and the company.
     pub observation: Observation,
     /// Folder of the run; `None` for a run in memory.
     pub folder: Option<PathBuf>,
@@ -39,9 +39,9 @@ pub struct DisplayedCompany {
     pub next_decision_day: u32,
     /// Cash at the end of each day, starting with day 0.
     pub cash_by_day: Vec<f64>,
-    /// Figures of every simulated week.
+    /// Company figures of every simulated week, oldest first.
     pub weeks: Vec<WeekFigures>,
-    /// Report on the last week.
+    /// Report on the last week; `None` before the first week.
     pub last_week: Option<WeekReport>,
     /// Negotiation funnel of every known group.
     pub funnels: Vec<Funnel>,
@@ -57,9 +57,9 @@ pub struct DisplayedCompany {
     pub notices: Vec<(u32, String)>,
     /// Delivered quality of every known group.
     pub quality: Vec<DeliveredQuality>,
-    /// Base quality, and the general bonus from development.
+    /// Base quality, and the general bonus that development has added.
     pub quality_base: (f64, f64),
-    /// Naive forecasts of cash.
+    /// Naive forecasts of cash, which the forecast form can fill in.
     pub naive_forecasts: Forecasts,
     /// Scores of past forecasts, by horizon.
     pub forecast_scores: Vec<ForecastScore>,
@@ -69,9 +69,9 @@ pub struct DisplayedCompany {
     pub past_queries: Vec<String>,
     /// Day on which the user last left each screen in an earlier session.
     pub last_viewed_days: BTreeMap<String, u32>,
-    /// The player's notes.
+    /// Text of the player's notes.
     pub notes: String,
-    /// Arguments of every tool that would set the current values.
+    /// For each tool, the arguments that would set the values in force.
     pub settings: BTreeMap<ToolId, Map<String, Value>>,
     /// Prices of model tiers and capacity tiers.
     pub price_list: PriceList,
@@ -83,27 +83,27 @@ pub struct DisplayedCompany {
     pub posts: Posts,
     /// Overview of the known groups and the economy.
     pub market: MarketOverview,
-    /// Names of enterprises.
-    pub company_names: EnterpriseNames,
-    /// Insights about every known group.
+    /// Names of enterprises, which replace customer numbers in texts.
+    pub enterprise_names: EnterpriseNames,
+    /// Result of `get_group_insights` for every known group.
     pub insights: BTreeMap<Group, GroupInsights>,
-    /// Limits of tool arguments.
+    /// Limits and prices that apply to the tools, for forms.
     pub tool_limits: ToolLimits,
-    /// Parameter values that texts of the tools quote.
+    /// Parameter values that are inserted into the descriptions of tools.
     pub numbers: Arc<ParameterNumbers>,
-    /// Running market studies.
+    /// Market studies that have not been completed.
     pub running_studies: Vec<RunningStudy>,
     /// Messages about problems found when the run was opened.
     pub remarks: Vec<String>,
-    /// Whether the company is shown at a position of a playback, which is read-only.
+    /// Whether this is a position of a playback, where the run cannot be changed.
     pub is_playback: bool,
-    /// Whether hidden state may be shown.
+    /// Whether inspections of hidden state are permitted.
     pub can_inspect: bool,
-    /// True values of the day; present only while the screens show true values.
+    /// Hidden true values of the displayed day; `None` unless the screens show true values.
     pub hidden_values: Option<Arc<HiddenValues>>,
     /// Session rules of the run.
     pub rules: SessionRules,
-    /// Study to which the run belongs.
+    /// Study to which the run belongs, if any.
     pub study: Option<StudyStamp>,
     /// State of the lesson to which the run belongs.
     pub lesson: Option<LessonStatus>,
@@ -145,7 +145,7 @@ impl DisplayedCompany {
             research_means: session.company().research_means(),
             posts: posts::read_posts(session, before.map(|company| &company.posts)),
             market: session.company().read_tool(&GetMarketOverview, ()).unwrap_or_default(),
-            company_names: session.company().company_names().clone(),
+            enterprise_names: session.company().enterprise_names().clone(),
             insights: group_insights(session),
             tool_limits: session.company().tool_limits(),
             numbers: session.numbers(),
@@ -160,7 +160,7 @@ impl DisplayedCompany {
         }
     }
 
-    /// Returns the current company of a session, with the state of its lesson.
+    /// Returns the current company of a session, including the state of its lesson.
     pub fn from_session_with_lesson(
         session: &mut Session,
         before: Option<&DisplayedCompany>,
@@ -198,7 +198,7 @@ impl DisplayedCompany {
     }
 
     /// Returns whether forecast scores may be shown. Some session rules permit scores only after the end of the run.
-    pub fn shows_calibration(&self) -> bool {
+    pub fn can_show_forecast_scores(&self) -> bool {
         self.rules.calibration || !self.is_running()
     }
 
@@ -207,7 +207,7 @@ impl DisplayedCompany {
         self.fits.iter().find(|fit| fit.group == group)
     }
 
-    /// Returns the current value of a tool's argument as a number, or 0 if the argument has no number.
+    /// Returns the current value of a tool's argument as a number, or 0 if the value is not a number.
     pub fn current_setting(&self, tool: ToolId, argument: &str) -> f64 {
         self.settings.get(&tool).and_then(|all| all.get(argument)).and_then(Value::as_f64).unwrap_or(0.0)
     }

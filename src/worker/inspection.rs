@@ -19,10 +19,10 @@ use novamind_session::identifiers::Group;
 use novamind_session::{Access, INSPECTION_REJECTED, Session};
 use novamind_tools::Rejection;
 
-/// A question about hidden state. A day means the state at the end of that day.
+/// A question about hidden state. A day in a question stands for the state at the end of that day.
 #[derive(Debug, Clone, PartialEq)]
 pub enum InspectionQuestion {
-    /// The lead equation of a group on a day, with some factors fixed at given values.
+    /// The lead equation of a group on a day. Each listed factor is fixed at the given value instead of its true value.
     Leads(Group, u32, Vec<(LeadFactor, f64)>),
     /// The delivered quality of a group on a day.
     Quality(Group, u32),
@@ -33,16 +33,16 @@ pub enum InspectionQuestion {
     /// The spillover of reputation changes on a day.
     Spillover(u32),
     /// The state and the actions of competitors on a day.
-    Rivals(u32),
+    Competitors(u32),
     /// The drift of required quality and budgets up to a day.
     Drift(u32),
-    /// The random draws of a part of the model on the day after the given day.
+    /// The random draws that a part of the model will use on the day after the given day.
     Draws(RandomPart, u32),
     /// The state of a customer, identified by number, on a day.
     Customer(u32, u32),
-    /// The result of a breakpoint command.
+    /// The result of listing or changing breakpoints.
     Breakpoints(BreakpointCommand),
-    /// The result of a plain-mode command, given as text and as a parsed command.
+    /// The result of a plain-mode command: its text and the parsed command.
     Command(String, InspectionCommand),
 }
 
@@ -55,27 +55,27 @@ pub enum BreakpointCommand {
     Set(Condition),
     /// Removes a breakpoint by number.
     Remove(u32),
-    /// Shows since when each condition has been true or false.
+    /// Shows for each condition whether it is true, and since which day.
     History,
 }
 
-/// The result of an inspection.
+/// The result of an inspection, for the x-ray screen.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct InspectionAnswer {
     /// Description of the hidden state, as lines of text.
     pub lines: Vec<String>,
-    /// Daily figures for some of the lines.
+    /// Daily figures that are drawn next to some of the lines.
     pub curves: Vec<InspectionCurve>,
-    /// Spillover map, shown instead of the lines.
+    /// The spillover map, which is shown instead of the lines.
     pub map: Option<SpilloverMap>,
     /// The displayed day, if it differs from the requested day. For a cancelled customer, this is the last day of the
     /// subscription.
     pub day: Option<u32>,
-    /// All breakpoints after a breakpoint command.
+    /// All breakpoints after a breakpoint command; empty after other questions.
     pub breakpoints: Vec<Breakpoint>,
 }
 
-/// The curve of a daily figure up to the displayed day.
+/// A daily figure up to the displayed day, for the chart next to a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InspectionCurve {
     /// Index of the line to which the curve belongs.
@@ -104,7 +104,8 @@ impl Question for InspectionQuestion {
 }
 
 impl SessionThread {
-    /// Queries the database with the hidden tables. In a playback, the tables that show one day show the current day.
+    /// Queries the database, including the hidden tables. In a playback, tables that describe a single day describe the
+    /// day of the current position.
     pub(super) fn query_hidden_tables(&mut self, sql: &str) -> Result<(QueryResult, Duration), Rejection> {
         let started = Instant::now();
         let stop = self.interrupt.clone();
@@ -136,7 +137,7 @@ impl SessionThread {
     }
 
     /// Returns a writable session of the open run, because each inspection is recorded. If the open session is
-    /// read-only, returns a second session. If `with_rows` is true, the session has a database.
+    /// read-only, returns a second session. The session has a database if `with_rows` is true.
     pub(super) fn inspection_session(&mut self, with_rows: bool) -> Result<&mut Session, Rejection> {
         let (is_allowed, folder) = match &self.active_run {
             None => return Err(Rejection::new("not_possible", "no run is open")),
@@ -153,8 +154,8 @@ impl SessionThread {
             self.inspection_run = None;
         }
         match (folder, &mut self.active_run, &mut self.inspection_run) {
-            (Some(folder), _, inside) => {
-                let session = match inside.take() {
+            (Some(folder), _, second_session) => {
+                let session = match second_session.take() {
                     Some(session) => session,
                     None => {
                         let opened = Session::open(&folder, Access::Write, with_rows);
@@ -162,7 +163,7 @@ impl SessionThread {
                         Box::new(opened.map_err(|error| Rejection::new("not_possible", error.to_string()))?)
                     }
                 };
-                Ok(inside.insert(session))
+                Ok(second_session.insert(session))
             }
             (None, Some(open), _) => Ok(open.session()),
             (None, None, _) => Err(Rejection::new("not_possible", "no run is open")),
@@ -175,7 +176,9 @@ fn run_inspection(
     question: &InspectionQuestion,
 ) -> Result<InspectionAnswer, Rejection> {
     let lines = match question {
-        InspectionQuestion::Leads(group, day, held) => return inspect_leads(session, *group, *day, held),
+        InspectionQuestion::Leads(group, day, fixed_factors) => {
+            return inspect_leads(session, *group, *day, fixed_factors);
+        }
         InspectionQuestion::Quality(group, day) => {
             describe_quality(&session.inspect().quality_equation(*group, Some(*day))?)
         }
@@ -203,7 +206,7 @@ fn run_inspection(
                 ..InspectionAnswer::default()
             });
         }
-        InspectionQuestion::Rivals(day) => {
+        InspectionQuestion::Competitors(day) => {
             describe_competitors(&session.inspect().competitor_state(Some(*day))?)
         }
         InspectionQuestion::Drift(day) => describe_drift(&session.inspect().drift_state(Some(*day))?),
@@ -231,10 +234,10 @@ fn inspect_leads(
     session: &mut Session,
     group: Group,
     day: u32,
-    held: &[(LeadFactor, f64)],
+    fixed_factors: &[(LeadFactor, f64)],
 ) -> Result<InspectionAnswer, Rejection> {
     let days = session.inspect().lead_equations(group, Some(day))?;
-    let lines = describe_lead_equation(&days, held);
+    let lines = describe_lead_equation(&days, fixed_factors);
     let value = |lead_equation: &LeadEquation, factor| {
         if lead_equation.is_known { lead_equation.factor(factor) } else { f64::NAN }
     };
@@ -247,7 +250,8 @@ fn inspect_leads(
     Ok(InspectionAnswer { lines, curves, ..InspectionAnswer::default() })
 }
 
-/// Returns an answer with a curve of daily values for the line with this prefix, if the line exists.
+/// Returns an answer with a curve of daily values for the line that starts with `begins`. Omits the curve if no line
+/// does.
 fn result_with_curve(lines: Vec<String>, begins: &str, days: Vec<f64>) -> InspectionAnswer {
     let line = lines.iter().position(|line| line.starts_with(begins));
     let curves =

@@ -1,9 +1,9 @@
 //! The worker threads of the console: one owns the session, two query the database.
 //!
-//! The console sends jobs and never blocks. Results are sent through the same channel as input. A result is either an
+//! The console sends jobs and never blocks. Results arrive through the same channel as input. A result is either an
 //! answer to the page that asked ([`question`]) or, if it affects more than one page, a response. A query waits for the
-//! session thread, so that all confirmed actions are visible. While a week is simulated, a query does not wait and
-//! reads the state before the week.
+//! session thread, so that its result includes all confirmed actions. While a week is simulated, a query does not wait
+//! and reads the state before the week.
 
 mod background;
 pub mod branches;
@@ -54,19 +54,19 @@ use study::ActiveStudy;
 
 pub use background::answer_on_thread;
 
-/// A job for the session thread.
+/// Work for the session thread. Jobs are done in the order in which they are sent.
 pub enum Job {
-    /// Execute a user's request.
+    /// Execute a request of the user, and send a response.
     Execute(Request),
-    /// Seek in the playback; setting the flag stops the seek.
+    /// Seek to this position of the playback. Setting the flag stops the seek.
     Seek(SeekTarget, Arc<AtomicBool>),
-    /// Show the next week of the playback after a pause.
+    /// Show the next week of the playback after this pause.
     ScheduleNextWeek(Duration),
     /// Cancel showing the next week of the playback.
     CancelNextWeek,
-    /// Answer a question that a page asked.
+    /// Answer a question of a page.
     AnswerQuestion(Box<dyn FnOnce(&mut SessionThread) + Send>),
-    /// Reconnect the query threads after a panic has ended a connection.
+    /// Reconnect the query threads after a query has panicked and lost its connection.
     Reconnect,
     /// Record a query of the user.
     RecordQuery(String, Result<QueryResult, Rejection>, Duration, QuerySource),
@@ -76,9 +76,9 @@ pub enum Job {
     RecordActivity(Box<dyn FnOnce(&mut Session) + Send>),
     /// Record that the user started the clock.
     StartClock,
-    /// Confirm that all earlier jobs are done.
+    /// Send a confirmation after all earlier jobs are done.
     Acknowledge(Sender<()>),
-    /// Save preferences for the next start.
+    /// Save preferences, so that the next start loads them.
     SavePreferences(Preferences),
     /// Save and close the run.
     Close(DetachCause),
@@ -86,7 +86,7 @@ pub enum Job {
     ShutDown,
 }
 
-/// Handle to the worker threads.
+/// Handle to the worker threads. The console uses it to send jobs and questions.
 pub struct Workers {
     jobs: Sender<Job>,
     queries: QueryThreads,
@@ -182,7 +182,7 @@ impl ActiveRun {
 /// The state of the thread that owns the session.
 pub struct SessionThread {
     active_run: Option<ActiveRun>,
-    /// Current runs folder. After a handout was opened, the runs folder of its student.
+    /// Current runs folder. After a handout is opened, this is the runs folder of its student.
     runs_folder: PathBuf,
     initial_runs_folder: PathBuf,
     last_company: Option<Arc<DisplayedCompany>>,

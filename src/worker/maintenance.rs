@@ -8,7 +8,7 @@ use novamind_session::TimeLeft;
 
 const LIMIT_CHECK_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Time between two attempts to repair the database, because each attempt may simulate weeks again.
+/// Time between attempts to repair the database. An attempt may simulate weeks again, so attempts are spaced out.
 const REPAIR_INTERVAL: Duration = Duration::from_secs(3);
 
 impl SessionThread {
@@ -29,7 +29,7 @@ impl SessionThread {
         reached.into_iter().for_each(|limit| self.send_response(Response::Limit(limit)));
     }
 
-    /// Reports once that the database could not be written.
+    /// Reports a failed write of the database, once per failure.
     pub(super) fn check_database(&mut self) {
         let Some(ActiveRun::Live(session)) = &self.active_run else { return };
         // Use the last known failure: waiting for the writer would delay the user.

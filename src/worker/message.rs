@@ -15,7 +15,7 @@ use novamind_session::{DraftTexts, PlaybackPosition, SettingChange, TimeLeft, We
 use novamind_study::{DueQuestion, NextStep};
 use novamind_tools::{Answer, Rejection, ToolId};
 
-/// A message to the console.
+/// A message that wakes the console.
 pub enum Message {
     /// Input of the user: a key, a click, pasted text or a new window size.
     Input(Event),
@@ -27,21 +27,21 @@ pub enum Message {
     Signal(i32),
     /// The user's editor has ended: the edited text, or the reason why the text is unchanged.
     EditorClosed(Result<String, String>),
-    /// The time after which the console wants to redraw has passed.
+    /// The delay until the next scheduled redraw has passed.
     RedrawDue,
 }
 
-/// A new position of the playback, or a problem.
+/// A new position of the playback, a problem, or both.
 pub struct PlaybackUpdate {
     /// Company at the position; `None` if the company is unchanged.
     pub company: Option<Arc<DisplayedCompany>>,
-    /// Position of the playback.
+    /// Position at which the playback is now.
     pub position: PlaybackPosition,
     /// Problem to report to the user, if any.
     pub problem: Option<String>,
 }
 
-/// An alternative that is offered if a run cannot be opened.
+/// What the user can do instead if a run cannot be opened.
 #[derive(Debug, Clone, PartialEq)]
 pub enum OpenFallback {
     /// The run with this id is open in another program and can be watched.
@@ -57,11 +57,11 @@ pub enum OpenFallback {
 pub struct SimulatedDay {
     /// Cash at the end of the day, in dollars.
     pub cash: f64,
-    /// Active individual subscriptions at the end of the day.
+    /// Number of individuals with an active subscription at the end of the day.
     pub subscribers: u32,
 }
 
-/// An answer or progress that is sent to the page that asked.
+/// An answer, or its progress, for the page that asked.
 pub struct Delivery {
     pub(super) store: Box<dyn FnOnce() + Send>,
     /// Whether the delivery is the answer (true) or progress (false).
@@ -80,7 +80,7 @@ impl Delivery {
 pub struct DebugRunResult {
     /// Lines that describe why the simulation stopped.
     pub lines: Vec<String>,
-    /// Whether the run has ended.
+    /// Whether the run has ended, so that no more days can be simulated.
     pub has_ended: bool,
 }
 
@@ -88,11 +88,11 @@ pub struct DebugRunResult {
 pub enum Response {
     /// The runs in the runs folder. If the request was to end or delete a run, also a message about the outcome.
     Runs(Option<Result<String, String>>, Result<Vec<RunSummary>, String>),
-    /// A class was read for display.
+    /// A class was read for display, or reading failed.
     ClassRead(Box<Result<(CollectedClass, ClassDisplayOptions), String>>),
     /// A handout was opened. The runs folder is now the folder of the student with this label.
     HandoutOpened(String),
-    /// A run was opened.
+    /// A run was opened for play or read-only.
     Opened(Arc<DisplayedCompany>),
     /// A playback was opened.
     PlaybackOpened(Arc<DisplayedCompany>, Box<PlaybackPosition>),
@@ -106,15 +106,15 @@ pub enum Response {
     TimeLeft(Vec<TimeLeft>),
     /// A time limit is near or reached.
     Limit(Limit),
-    /// The run was opened with a clock that a time limit had stopped.
+    /// A run was opened whose clock a time limit had stopped.
     ClockStopped,
     /// Drafts of the opened run that were saved before the program stopped.
     Drafts(Box<DraftTexts>),
-    /// A run could not be opened or created. Contains the error message and an alternative.
+    /// A run could not be opened or created. Contains the error message and what the user can do instead.
     NotOpened(String, Option<OpenFallback>),
     /// A tool call was executed or rejected.
     ToolCalled(ToolId, Result<Box<Answer>, Rejection>, Arc<DisplayedCompany>),
-    /// A setting change was undone or redone, or the request was rejected.
+    /// A setting change was undone or redone, or this was rejected.
     SettingRestored(&'static str, Result<Vec<SettingChange>, Rejection>, Arc<DisplayedCompany>),
     /// A day was simulated. Contains its figures if the day was simulated for the first time.
     DaySimulated(u32, Option<SimulatedDay>),
@@ -126,19 +126,19 @@ pub enum Response {
     DatabaseCurrent,
     /// Days of a debug run were simulated.
     DebugDaysSimulated(Result<DebugRunResult, Rejection>, Arc<DisplayedCompany>),
-    /// A guess was recorded or a hint was requested in a lesson, or the request was rejected.
+    /// In a lesson, a guess was recorded or a hint was shown, or this was rejected.
     LessonUpdated(Option<Rejection>, Arc<DisplayedCompany>),
     /// The debrief of a lesson part was computed.
     DebriefReady(Arc<Result<Debrief, Rejection>>),
     /// The notes were saved, or saving failed.
     NotesSaved(Result<(), Rejection>, Arc<DisplayedCompany>),
-    /// A query was saved, with a message and the new library, or saving failed.
+    /// A query was saved, or saving failed. Contains a message and the new library.
     QuerySaved(Result<(String, QueryLibrary), String>),
     /// The run report was built.
     RunReportReady(Arc<RunReport>),
-    /// The files of the run report were rendered, with their names and contents.
+    /// The files of the run report were rendered. Contains their names and contents.
     ReportFilesReady(Vec<(&'static str, String)>),
-    /// Files were written, with a message, or writing failed.
+    /// Files were written, or writing failed. Contains a message.
     FilesWritten(Result<String, String>),
     /// An external program of the user ended. Contains a title and the output of the program, or the error if the
     /// program did not end normally.
@@ -147,7 +147,7 @@ pub enum Response {
     Closed(Option<String>),
     /// A response to a request in a study.
     Study(StudyResponse),
-    /// A worker thread has panicked.
+    /// A worker thread has panicked. Contains the message of the panic.
     Crashed(String),
     /// The record can no longer be written. Contains the reason and the next step.
     RecordLost(String),

@@ -60,15 +60,15 @@ impl OpenRun<'_> {
     }
 
     pub(super) fn advance(&mut self, rationale: &str, forecasts: &Forecasts) -> Response {
-        let mut tell = day_reporter(self.messages);
-        let week = self.session.advance(rationale, forecasts, Via::Form, &mut tell);
+        let mut report_day = day_reporter(self.messages);
+        let week = self.session.advance(rationale, forecasts, Via::Form, &mut report_day);
         Response::WeekAdvanced(week.map(Box::new), self.company())
     }
 
     pub(super) fn run_days(&mut self, days: u32) -> Response {
-        let mut tell = day_reporter(self.messages);
+        let mut report_day = day_reporter(self.messages);
         let breakpoints = self.session.inspect().breakpoints().map_or(0, |set| set.len());
-        let run = self.session.inspect().run_until_breakpoint(days, &mut tell);
+        let run = self.session.inspect().run_until_breakpoint(days, &mut report_day);
         let ran = run.map(|run| DebugRunResult {
             lines: describe_stop(&run, self.session.day(), breakpoints),
             has_ended: run.week.ended.is_some(),
@@ -94,7 +94,7 @@ impl OpenRun<'_> {
     }
 }
 
-/// Returns a function that reports simulated days. Reports have a minimum interval.
+/// Returns a function that reports a simulated day to the console, at most once per [`DAY_REPORT_INTERVAL`].
 pub(super) fn day_reporter(news: &Sender<Message>) -> impl FnMut(&DayReport<'_>) + use<> {
     let (news, mut instant) = (news.clone(), Instant::now());
     move |report| {

@@ -13,7 +13,7 @@ use novamind_session::Preview;
 use novamind_session::identifiers::Group;
 use novamind_tools::{Rejection, ToolId};
 
-/// A question that asks for the preview of a tool call.
+/// A question for the preview of a tool call. The preview describes the effects of the call without executing it.
 #[derive(Debug, Clone)]
 pub struct PreviewCallQuestion {
     /// Tool whose call is previewed.
@@ -33,8 +33,8 @@ impl Question for PreviewCallQuestion {
     }
 }
 
-/// A question that asks for the participation curve of a group. The curve is the true curve if inspections are
-/// permitted, otherwise the estimated curve.
+/// A question for the participation curve of a group: the true curve if inspections are permitted, otherwise the
+/// estimated curve.
 #[derive(Debug, Clone)]
 pub struct CurveQuestion(pub Group);
 
@@ -49,8 +49,8 @@ impl Question for CurveQuestion {
     }
 }
 
-/// A question that asks for the curve of a group according to the estimates of market studies, for panes that show the
-/// curve without a request of the user. The answer reveals no hidden state and is not recorded.
+/// A question for the curve of a group as market studies estimate it. For panes that show the curve automatically: the
+/// answer reveals no hidden state and is not recorded.
 #[derive(Debug, Clone)]
 pub struct EstimatedCurveQuestion(pub Group);
 
@@ -64,7 +64,7 @@ impl Question for EstimatedCurveQuestion {
     }
 }
 
-/// A question that asks for the true values of a day.
+/// A question for the hidden true values of a day.
 #[derive(Debug, Clone)]
 pub struct HiddenValuesQuestion {
     /// Day whose true values are requested.
@@ -83,8 +83,8 @@ impl Question for HiddenValuesQuestion {
     }
 }
 
-/// A question that asks for the runs that are related to the open run. The answer is empty in studies and for runs
-/// outside the runs folder.
+/// A question for the runs that are related to the open run. The answer is empty in studies and for runs outside the
+/// runs folder.
 #[derive(Debug, Clone)]
 pub struct RelatedRunsQuestion;
 
@@ -104,8 +104,8 @@ impl Question for RelatedRunsQuestion {
     }
 }
 
-/// A question that asks for the results of strong policies. The function in the question simulates these policies with
-/// the scenario and seed of the open run.
+/// A question for the results of strong policies on the scenario and seed of the open run. Contains the function that
+/// simulates the policies.
 #[derive(Debug, Clone)]
 pub struct OpponentsQuestion(pub PlayOpponentsFn);
 
@@ -125,8 +125,8 @@ impl Question for OpponentsQuestion {
 }
 
 impl SessionThread {
-    /// Returns the participation curve of a group on the displayed day. The inspection of true values is recorded in
-    /// the run, not in the session of a playback.
+    /// Returns the participation curve of a group on the displayed day. If the curve is the true one, the inspection is
+    /// recorded in the run, even if a playback of the run is open.
     fn participation_curve(&mut self, group: Group) -> Result<CurveExplorer, Rejection> {
         let none_open = || Rejection::new("not_possible", "no run is open");
         let (is_allowed, day) = match self.active_run.as_ref().ok_or_else(none_open)? {

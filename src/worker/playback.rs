@@ -112,7 +112,7 @@ impl SessionThread {
         Ok(playback)
     }
 
-    /// Reports a replayed day, with a minimum interval between reports.
+    /// Reports a replayed day, at most once per [`DAY_REPORT_INTERVAL`].
     fn report_day(&self, instant: &mut Instant, day: u32) -> ControlFlow<()> {
         if instant.elapsed() >= DAY_REPORT_INTERVAL {
             *instant = Instant::now();
@@ -136,11 +136,11 @@ impl SessionThread {
             false => self.report_day(&mut instant, day),
         });
         // A failed seek also creates a new session.
-        let anew = !matches!(went, Ok(SeekResult::Reached | SeekResult::Stopped));
-        if anew {
+        let is_new_session = !matches!(went, Ok(SeekResult::Reached | SeekResult::Stopped));
+        if is_new_session {
             self.queries.connect(playback.session());
         }
-        let before = self.last_company.take().filter(|_| !anew);
+        let before = self.last_company.take().filter(|_| !is_new_session);
         let company = Arc::new(playback_company(&playback, before.as_deref()));
         self.last_company = Some(company.clone());
         let place = playback.position();
@@ -168,7 +168,7 @@ impl SessionThread {
     }
 }
 
-/// Returns the company at a position. Notes that were written later are excluded.
+/// Returns the company at a position of a playback. Notes that were written after this position are excluded.
 fn playback_company(playback: &Playback, before: Option<&DisplayedCompany>) -> DisplayedCompany {
     let memo = playback.notes().unwrap_or_default();
     let can_inspect = playback.can_inspect();

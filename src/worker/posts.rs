@@ -1,4 +1,4 @@
-//! Posts of the social feed for the screens. After the first reading, only new posts are read.
+//! Posts of the social feed for the screens. After the first call, only new posts are read.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use novamind_session::Session;
 use novamind_session::identifiers::Group;
 use novamind_tools::{GetSocialPosts, PostAuthor, PostLimit, SocialPost};
 
-/// The kind of a post's author.
+/// Who wrote a post.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PostKind {
     /// Customers who post without being asked.
@@ -31,7 +31,7 @@ impl PostKind {
         }
     }
 
-    /// Returns the name of the kind on screens.
+    /// Returns the name that screens show for the kind.
     pub fn name(self) -> &'static str {
         match self {
             PostKind::Customers => "customers",
@@ -46,21 +46,21 @@ impl PostKind {
 /// A post of the social feed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Post {
-    /// Kind of the author.
+    /// Who wrote the post.
     pub kind: PostKind,
-    /// Number of the post, counted separately for the player's posts and for other posts.
+    /// Number of the post. The player's posts and other posts are numbered separately.
     pub number: u32,
     /// Day on which the post was published.
     pub day: u32,
     /// Name and group of the author.
     pub author: String,
-    /// Text of the post.
+    /// Text of the post, excluding the author.
     pub text: String,
     /// Number of the post to which this post replies, if any.
     pub answered_post: Option<u32>,
     /// Number of views of the player's post; 0 for other posts.
     pub views: u32,
-    /// Number of comments on the player's post.
+    /// Number of comments on the player's post; 0 for other posts.
     pub comments: u32,
 }
 
@@ -91,10 +91,10 @@ impl Post {
     }
 }
 
-/// Posts of other authors, newest first. Successive readings share unchanged posts.
+/// Posts of other authors, newest first. Successive calls share unchanged posts.
 pub type Posts = Arc<Vec<Arc<Post>>>;
 
-/// Initial limit on the number of new posts to read. It is usually higher than the number of posts in a week.
+/// Initial limit on the number of new posts to read, usually more than are published in a week.
 const INITIAL_POSTS: usize = 64;
 
 /// Reads the posts of other authors. If some posts are known, requests only newer posts.
@@ -125,8 +125,8 @@ pub fn read_posts(session: &Session, known: Option<&Posts>) -> Posts {
 
 fn kind_and_name(author: &PostAuthor, is_comment: bool) -> (PostKind, String) {
     let group = author.group_id.map_or("–", Group::id);
-    // Press posts have the first group as author group and no persona. Posts of customers in discovered groups have no
-    // persona either.
+    // Press posts have the first group as the author's group, and no persona. Posts of customers in discovered groups
+    // also have no persona.
     let is_press = author.group_id.is_some() && author.group_id == Group::at(0);
     match (is_comment, author.persona_name.as_deref()) {
         (true, name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("someone"))),

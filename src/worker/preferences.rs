@@ -1,5 +1,5 @@
-//! Preferences for the appearance and for the columns of tables, which the user sets by pressing keys. They are saved
-//! as `console.toml` in the configuration folder.
+//! Preferences for the appearance of the console and for table columns, which the user sets by pressing keys. They are
+//! saved as `console.toml` in the configuration folder.
 
 use std::collections::BTreeMap;
 
@@ -16,13 +16,13 @@ const PREFERENCES_FILE: &str = "console.toml";
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// Name of the chosen theme.
+    /// Name of the chosen theme; `None` for the default theme.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub theme: Option<String>,
-    /// Characters with which charts are drawn.
+    /// Character set for drawing charts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marker: Option<Glyphs>,
-    /// Column layouts, by table name.
+    /// Layouts of tables whose columns the user has changed, by table name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub tables: BTreeMap<String, ColumnLayout>,
 }

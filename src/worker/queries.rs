@@ -17,16 +17,16 @@ use novamind_tools::Rejection;
 /// An SQL query that the user entered or selected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Query {
-    /// SQL statement of the query.
+    /// Statement as the user entered or selected it, before the permission check.
     pub sql: String,
-    /// The tables that the statement can read.
+    /// Tables that the statement is permitted to read.
     pub tables: QueriedTables,
 }
 
-/// The tables that a query of the user can read.
+/// The tables that a query of the user is permitted to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QueriedTables {
-    /// The public tables. Contains the source of the query.
+    /// The public tables. The query is recorded with this source.
     Visible(QuerySource),
     /// The public tables and the hidden tables.
     Hidden,
@@ -68,7 +68,7 @@ impl Question for Reading {
 }
 
 impl SessionThread {
-    /// Forwards a question to a query thread after the database contains all confirmed actions.
+    /// Forwards a question to a query thread once the database contains all confirmed actions.
     fn ask_database(&mut self, question: DatabaseQuestion) {
         self.with_run(|run| {
             // After a failed write, the query returns the existing rows, and the screen shows a warning.
@@ -119,7 +119,7 @@ enum QueryJob {
 }
 
 impl QueryThreads {
-    /// Starts the query threads. Each query that must be recorded is sent to `jobs`.
+    /// Starts the query threads. They send a job to `jobs` for each query that must be recorded.
     pub(super) fn start(jobs: &Sender<Job>) -> QueryThreads {
         let start = || start_thread(jobs.clone(), ask);
         QueryThreads { user: start(), screens: start(), interrupt: Arc::default() }

@@ -1,5 +1,5 @@
-//! Questions of pages and their answers. The page keeps a [`Pending`] and the worker keeps the matching [`Reply`]. An
-//! answer is delivered only to the page that asked, and only for its latest question.
+//! Questions of pages and their answers. The page keeps a [`Pending`], and the worker keeps the matching [`Reply`]. An
+//! answer reaches only the page that asked, and only if the page has not asked again.
 //!
 //! Answers are sent as a [`Message`], in order with all other messages.
 
@@ -148,7 +148,7 @@ impl Workers {
 pub struct Reply<Q: Question> {
     slot: Weak<Slot<Q>>,
     messages: Sender<Message>,
-    /// Ticket with which the user can stop the query.
+    /// Ticket that lets the user stop the query.
     pub(super) ticket: Option<QueryTicket>,
     is_answered: bool,
 }

@@ -33,7 +33,7 @@ pub enum Request {
     Recover(String),
     /// Open a playback of a recorded run.
     Replay {
-        /// Recorded run to play back.
+        /// Run or file to play back.
         recorded: RecordSource,
         /// Initial position of the playback.
         goal: SeekTarget,
@@ -42,7 +42,7 @@ pub enum Request {
     },
     /// Create a branch from the current position of the playback and play the branch.
     TakeOver(Mode),
-    /// Create a branch that keeps the decisions of the run except for some edits, and play the branch.
+    /// Create a branch with the decisions of the run as changed by `edits`, and play the branch.
     AdoptBranch {
         /// First week in which the branch differs from the run.
         week: u32,
@@ -51,9 +51,9 @@ pub enum Request {
     },
     /// Execute a tool call.
     Call {
-        /// Tool to call.
+        /// Tool that is called.
         tool: ToolId,
-        /// Arguments of the call.
+        /// Arguments of the call, not yet validated.
         arguments: Value,
     },
     /// Undo the last setting change.
@@ -62,9 +62,9 @@ pub enum Request {
     Redo,
     /// Submit the week and simulate it.
     Advance {
-        /// Rationale of the week.
+        /// Rationale that the user entered for the week.
         rationale: String,
-        /// Forecasts of cash for all horizons.
+        /// Forecasts of cash for all horizons, in dollars.
         forecasts: Forecasts,
     },
     /// Simulate at most this number of days of a debug run, up to the next breakpoint.
@@ -84,7 +84,7 @@ pub enum Request {
 /// A request of a student in a lesson. Steps and parts are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LessonRequest {
-    /// Answer the question of the step.
+    /// Answer the question of the step with this number.
     Guess(f64),
     /// Show the next hint.
     Hint,
@@ -131,7 +131,7 @@ pub enum StudyRequest {
 /// The participant's answer to a question, with details of how it was entered.
 #[derive(Debug, Clone)]
 pub struct GivenAnswer {
-    /// Question that is answered.
+    /// Question that the participant answered.
     pub due: DueQuestion,
     /// Value of the answer; null if the question was skipped.
     pub value: Value,
@@ -141,7 +141,7 @@ pub struct GivenAnswer {
     pub changes: u32,
 }
 
-/// The source of a recorded run.
+/// Where a recorded run is stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RecordSource {
     /// The run with this id in the runs folder.
@@ -150,7 +150,7 @@ pub enum RecordSource {
     File(PathBuf),
 }
 
-/// Status text while a script runs.
+/// Status text that is shown while a script runs.
 pub const SCRIPT_STATUS: &str = "running the script";
 
 impl Request {
@@ -172,7 +172,7 @@ impl Request {
         of_lesson || matches!(self, Request::Call { .. } | Request::Undo | Request::Redo)
     }
 
-    /// Returns whether the request is forbidden for participants of a study, because it affects more than their current
+    /// Returns whether participants of a study may not send the request, because it affects more than their current
     /// run.
     pub fn is_forbidden_for_participants(&self) -> bool {
         match self {

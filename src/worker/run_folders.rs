@@ -18,10 +18,10 @@ use novamind_rules::calls_for_waiting_threads;
 use novamind_session::{Access, NewRun, SealKey, Session, Storage, abandon_run, recover};
 use novamind_tools::Rejection;
 
-/// A question that asks for the preview of a run.
+/// A question for the preview of a run in the run list.
 #[derive(Debug, Clone)]
 pub struct PreviewQuestion {
-    /// ID of the run to preview.
+    /// ID of the selected run.
     pub id: String,
 }
 
@@ -78,9 +78,9 @@ impl SessionThread {
         let storage = Storage::Runs(self.runs_folder.clone());
         let new = NewRun { storage, projection: true, sync_calls: true, ..new };
         let created = new.check_baseline(&self.configuration);
-        let mut tell = day_reporter(&self.messages);
-        let made =
-            created.and_then(|()| Session::create_with_progress(new.clone(), &self.configuration, &mut tell));
+        let mut report_day = day_reporter(&self.messages);
+        let made = created
+            .and_then(|()| Session::create_with_progress(new.clone(), &self.configuration, &mut report_day));
         match made {
             Err(RunError::ConsentNeeded(text)) => {
                 self.send_response(Response::NotOpened(
@@ -113,8 +113,8 @@ impl SessionThread {
         self.show_opened_run(opened, id, None);
     }
 
-    /// Rejects playing a run of a participant: only the participant may continue the run, under the protocol of the
-    /// study.
+    /// Rejects playing a run that belongs to a participant: only the participant may continue it, under the study's
+    /// protocol.
     fn reject_study_session(&self, folder: &Path, access: Access) -> Result<(), RunError> {
         let is_elsewhere = folder.parent() != Some(self.runs_folder.as_path());
         if self.lists_all_participants && access == Access::Write && is_elsewhere {

@@ -1,10 +1,9 @@
-//! Queries with which the screens read data. Each screen query is a guarded query over the public tables, which a user
-//! could also run. The SQL is in `assets/readings`, or in `assets/queries` if the query library also contains the
-//! query.
+//! SQL queries of the screens. Each query is guarded and reads only public tables, so the user could also run it. The
+//! SQL is in `assets/readings`, or in `assets/queries` if the query library also contains the query.
 
 macro_rules! readings {
     ($($variant:ident $file:literal $doc:literal)*) => {
-        /// A query with which a screen reads data.
+        /// An SQL query that a screen runs to read its data.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Reading { $(#[doc = $doc] $variant,)* }
 

@@ -10,9 +10,9 @@ use novamind_study::{DueQuestion, NextStep, ParticipantSession, Study, record_re
 pub(super) struct ActiveStudy {
     pub(super) study: Study,
     pub(super) participant: Option<ParticipantSession>,
-    /// The participant's consent that is not recorded in a run yet.
+    /// The participant's consent until a run records it.
     pub(super) consent: Option<ConsentAgreement>,
-    /// Due questions that were most recently reported to the console.
+    /// The due questions that were last reported to the console.
     pub(super) due_questions: Vec<DueQuestion>,
 }
 

@@ -17,7 +17,7 @@ pub fn played_session(weeks: usize) -> Session {
     played_session_of(DEFAULT_SCENARIO, weeks)
 }
 
-/// Returns a session like [`played_session`], in the given scenario.
+/// Returns a session like [`played_session`], but in the given scenario.
 pub fn played_session_of(scenario: &str, weeks: usize) -> Session {
     let (seed, days, scenario) = (Some(7), Some(200), scenario.to_owned());
     let new = NewRun { seed, days, scenario, storage: Storage::Memory, ..NewRun::default() };

@@ -20,7 +20,7 @@ use super::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 pub struct CanonicalHasher {
     hasher: blake3::Hasher,
     pending: Vec<u8>,
-    /// Number of pending bytes that triggers hashing.
+    /// Number of pending bytes at which complete chunks are hashed; `usize::MAX` for a collector.
     chunk_bytes: usize,
 }
 
@@ -50,10 +50,10 @@ impl CanonicalHasher {
         }
     }
 
-    /// Creates a hasher that only collects bytes, with capacity for `room` bytes.
-    pub fn collector(room: usize) -> CanonicalHasher {
+    /// Creates a hasher that only collects bytes. `capacity` is the expected number of bytes.
+    pub fn collector(capacity: usize) -> CanonicalHasher {
         let hasher = blake3::Hasher::new();
-        CanonicalHasher { hasher, pending: Vec::with_capacity(room), chunk_bytes: usize::MAX }
+        CanonicalHasher { hasher, pending: Vec::with_capacity(capacity), chunk_bytes: usize::MAX }
     }
 
     /// Returns the bytes that a collector has collected.
@@ -61,7 +61,8 @@ impl CanonicalHasher {
         self.pending
     }
 
-    /// Appends the bytes of a column in batches, which is fast. Columns make up most of the state.
+    /// Appends the bytes of a column in batches, which is faster than one value at a time. Columns make up most of the
+    /// state.
     fn update_column<T: Copy, const WIDTH: usize>(
         &mut self,
         values: &[T],
@@ -253,7 +254,7 @@ impl<T: Canonical> Canonical for ByChannel<T> {
     }
 }
 
-/// Implements [`Canonical`] and [`Restore`] for a struct from the list of all its fields. A field that is missing in
+/// Implements [`Canonical`] and [`Restore`] for a struct from the list of all its fields. A field that is missing from
 /// the list causes a compile error.
 #[macro_export]
 macro_rules! canonical {
@@ -275,8 +276,8 @@ macro_rules! canonical {
 }
 pub use canonical;
 
-/// Implements [`Canonical`] and [`Restore`] for a fieldless enum by its discriminant. A variant that is missing in the
-/// list causes a compile error.
+/// Implements [`Canonical`] and [`Restore`] for a fieldless enum by its discriminant. A variant that is missing from
+/// the list causes a compile error.
 macro_rules! canonical_codes {
     ($($name:ident { $($value:ident),* $(,)? })*) => {$(
         impl $crate::canonical::Canonical for $name {

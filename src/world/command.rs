@@ -6,7 +6,7 @@
 
 use super::enterprise::messages::{OfferDraft, OfferMessage};
 use super::events::{Attempt, Project, Study};
-use super::events::{Category, Facts, LedgerEntry, LedgerNote, Notice, OwnPostMade, ResearchChange};
+use super::events::{Category, Facts, LedgerEntry, LedgerNote, Notice, OwnPostPublished, ResearchChange};
 use super::identifiers::Group;
 use super::market::insights::{Insights, insights};
 use super::market::social::own_posts::OwnPost;
@@ -43,9 +43,9 @@ pub enum Command {
 /// A post of the player that is to be published.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PostDraft {
-    /// Text of the post.
+    /// Text that the player wrote.
     pub content: String,
-    /// Number of the post to which the player replies.
+    /// Number of the post to which the player replies; `None` if the post is not a reply.
     pub reply_to: Option<u32>,
 }
 
@@ -70,7 +70,7 @@ pub enum ResolvedCommand {
     /// Numbers of the threads that end.
     RejectDeals(Vec<u32>),
     /// A post of the player with its effects.
-    Post(OwnPostMade),
+    Post(OwnPostPublished),
 }
 
 impl ResolvedCommand {
@@ -110,7 +110,7 @@ impl World {
             Command::RejectDeals(threads) => ResolvedCommand::RejectDeals(threads),
             Command::Post(PostDraft { content, reply_to }) => {
                 let post = self.market.social.own.len() as u32 + 1;
-                ResolvedCommand::Post(OwnPostMade { post, content, reply_to })
+                ResolvedCommand::Post(OwnPostPublished { post, content, reply_to })
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Values of a day that all customer mechanisms share, computed after the service health of the day.
+//! Values that all customer mechanisms of a day share. They are computed after the day's service health.
 
 use super::events::ServiceDay;
 use super::morning::Morning;
@@ -17,7 +17,8 @@ pub struct DayContext<'a> {
     pub settings: &'a Settings,
     /// Service health of today.
     pub service: &'a ServiceDay,
-    /// Quality loss from today's service, or 0 if the fidelity parameter does not apply it to decisions.
+    /// Quality loss from today's overload and outage. The fidelity parameter `service_penalty` determines whether the
+    /// loss also affects decisions.
     pub service_penalty: f64,
     /// Strength of in-app advertising for each group.
     pub ads: &'a AdLoad<'a>,

@@ -120,9 +120,9 @@ pub fn step_day_observed(
     // Subscribers open issues, update satisfaction, decide and pay; enterprises negotiate.
     let opinion_context = OpinionContext { day: &today, chronicle: &market.social.chronicle };
     let mut updated = update_satisfaction(customers, &today, &opinion_context, watch);
-    let selected_authors = updated
-        .post_weights
-        .map(|voices| author_selection::from_subscribers(voices, customers, &opinion_context, streams));
+    let selected_authors = updated.post_weights.map(|block_weights| {
+        author_selection::from_subscribers(block_weights, customers, &opinion_context, streams)
+    });
     issues::allocate_resolutions(&mut updated.calls, settings, customers, issue_counter, &today);
     let renewal_context = RenewalContext {
         day: &today,
@@ -216,15 +216,15 @@ fn update_satisfaction(
         let before = customers_post_today.then(|| block.satisfaction.clone());
         watch.before_satisfaction(group, block, day);
         let contribution = satisfaction::update_block(group, block, day);
-        let voices =
+        let block_weights =
             before.map(|before| author_selection::weigh_block(group, block, before, opinion_context));
-        (calls, (group, contribution), voices)
+        (calls, (group, contribution), block_weights)
     });
-    let (calls, contributions, voices): (Vec<_>, Vec<_>, Vec<_>) = updated.into_iter().collect();
+    let (calls, contributions, block_weights): (Vec<_>, Vec<_>, Vec<_>) = updated.into_iter().collect();
     SatisfactionRound {
         calls,
         contributions,
-        post_weights: customers_post_today.then(|| voices.into_iter().flatten().collect()),
+        post_weights: customers_post_today.then(|| block_weights.into_iter().flatten().collect()),
     }
 }
 

@@ -49,7 +49,7 @@ impl Fault {
         Fault::TargetedGainAsGeneral,
     ];
 
-    /// Returns the fault with this number.
+    /// Returns the fault with this number, or `None` if there is none. Fault 1 is the first fault of [`Fault::ALL`].
     pub fn from_number(number: u32) -> Option<Fault> {
         Fault::ALL.into_iter().find(|fault| fault.number() == number)
     }

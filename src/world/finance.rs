@@ -9,7 +9,7 @@ use super::params::Params;
 use super::product::usage::MeteredUsage;
 use super::settings::Settings;
 
-/// Cash of the company, in dollars: the sum of the ledger.
+/// The cash of the company, which is the sum of the ledger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finance {
     /// Current cash in dollars, which can be negative within a day.

@@ -71,8 +71,8 @@ mod tests {
 
     const LOAD_FACTOR: f64 = 1000.0;
 
-    /// Returns the world of a company at the end of day `eve`, with its parameters and streams.
-    fn company_at_end_of_day(eve: u32) -> (World, Params, Streams) {
+    /// Returns the world of a company at the end of a day, with its parameters and streams.
+    fn company_at_end_of_day(day_before: u32) -> (World, Params, Streams) {
         let (params, streams) = (Params::bundled(), Streams::new(9));
         let mut facts = Facts::default();
         let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
@@ -80,14 +80,14 @@ mod tests {
         world.settings.core.capacity_tier = 7;
         let ads = &mut world.settings.targeted_ads.targeted_spend;
         ads.insert(Channel::SearchAds, PerGroup::from([(Group::parse("S1").expect("a group"), 20_000.0)]));
-        for _ in 0..eve {
+        for _ in 0..day_before {
             step_day(&mut world, &params, &streams, &mut facts);
         }
         (world, params, streams)
     }
 
-    fn next_day(eve: &(World, Params, Streams), fixed_inputs: &FixedInputs) -> (World, DayFigures) {
-        let (world, params, streams) = eve;
+    fn next_day(day_before: &(World, Params, Streams), fixed_inputs: &FixedInputs) -> (World, DayFigures) {
+        let (world, params, streams) = day_before;
         let mut world = world.clone();
         let figures =
             step_day_observed(&mut world, params, streams, fixed_inputs, &mut Facts::default(), &NoObserver)
@@ -97,31 +97,31 @@ mod tests {
 
     #[test]
     fn fixed_inputs_stay_constant_and_others_change() {
-        let eve = company_at_end_of_day(89);
-        let held = |change: fn(&mut FixedInputs)| {
+        let day_before = company_at_end_of_day(89);
+        let fixed = |change: fn(&mut FixedInputs)| {
             let mut fixed_inputs = FixedInputs { from: 90, ..FixedInputs::default() };
             change(&mut fixed_inputs);
-            next_day(&eve, &fixed_inputs).0.market
+            next_day(&day_before, &fixed_inputs).0.market
         };
-        let (before, free) = (&eve.0.market, held(|_| {}));
+        let (before, free) = (&day_before.0.market, fixed(|_| {}));
         assert!(free.drift != before.drift && free.yields != before.yields);
         assert!(free.economy.pmi != before.economy.pmi);
-        let drift = held(|inputs| inputs.drift = true);
+        let drift = fixed(|inputs| inputs.drift = true);
         assert_eq!(drift.drift.c_max, before.drift.c_max);
         assert_eq!((&drift.yields, drift.economy.pmi), (&free.yields, free.economy.pmi));
-        let yields = held(|held| held.yields = true);
+        let yields = fixed(|fixed| fixed.yields = true);
         assert_eq!((&yields.yields, &yields.drift), (&before.yields, &free.drift));
-        let economy = held(|held| held.economy = true);
+        let economy = fixed(|fixed| fixed.economy = true);
         assert_eq!((economy.economy.pmi, &economy.yields), (before.economy.pmi, &free.yields));
     }
 
     #[test]
     fn fixed_competitors_cause_no_events() {
         let moves = |rivals: bool| {
-            let mut eve = company_at_end_of_day(89);
+            let mut day_before = company_at_end_of_day(89);
             let fixed_inputs = FixedInputs { from: 90, competitors: rivals, ..FixedInputs::default() };
-            (0..60).for_each(|_| eve.0 = next_day(&eve, &fixed_inputs).0);
-            eve.0.market.competitors.len()
+            (0..60).for_each(|_| day_before.0 = next_day(&day_before, &fixed_inputs).0);
+            day_before.0.market.competitors.len()
         };
         assert_eq!(
             (moves(true), moves(false) > 2),
@@ -131,10 +131,11 @@ mod tests {
 
     #[test]
     fn fixed_factors_replace_lead_factors() {
-        let mut eve = company_at_end_of_day(59);
-        eve.0.market.surges.push(Surge { day: 58, end_day: 70, multiplier: 4.0 });
-        let leads =
-            |fixed_inputs: FixedInputs| next_day(&eve, &FixedInputs { from: 60, ..fixed_inputs }).1.new_leads;
+        let mut day_before = company_at_end_of_day(59);
+        day_before.0.market.surges.push(Surge { day: 58, end_day: 70, multiplier: 4.0 });
+        let leads = |fixed_inputs: FixedInputs| {
+            next_day(&day_before, &FixedInputs { from: 60, ..fixed_inputs }).1.new_leads
+        };
         let free = leads(FixedInputs::default());
         assert!(leads(FixedInputs { surges: vec![1.0], ..FixedInputs::default() }) * 2 < free);
         assert!(leads(FixedInputs { month_days: vec![0.25], ..FixedInputs::default() }) * 2 < free);
@@ -144,16 +145,16 @@ mod tests {
 
     #[test]
     fn fixed_service_determines_overload_and_noise() {
-        let eve = company_at_end_of_day(59);
+        let day_before = company_at_end_of_day(59);
         let service = |load: f64, luck_of: u32| {
             let fixed_inputs = FixedInputs {
                 from: 60,
                 service: vec![FixedService { load_factor: load, draw_day: luck_of }],
                 ..FixedInputs::default()
             };
-            next_day(&eve, &fixed_inputs).1
+            next_day(&day_before, &fixed_inputs).1
         };
-        let free = next_day(&eve, &FixedInputs::default()).1;
+        let free = next_day(&day_before, &FixedInputs::default()).1;
         assert_eq!(service(1.0, 60), free);
         assert!(service(LOAD_FACTOR, 60).overload > 0.0 && free.overload == 0.0);
         assert_ne!(service(1.0, 59).p95_ms, free.p95_ms);

@@ -37,7 +37,7 @@ impl Group {
         GROUP_IDS.iter().position(|known| *known == id).and_then(Group::at)
     }
 
-    /// Returns the identifier of the group in tools and tables.
+    /// Returns the identifier that tools and tables use for the group.
     pub fn id(self) -> &'static str {
         GROUP_IDS[self.index()]
     }
@@ -142,7 +142,7 @@ impl Channel {
         Channel::ALL.into_iter().find(|channel| channel.id() == id)
     }
 
-    /// Returns the identifier of the channel in tools and tables.
+    /// Returns the identifier that tools and tables use for the channel.
     pub fn id(self) -> &'static str {
         ["social_media", "search_ads", "linkedin", "content_marketing", "referral_program"][self.index()]
     }

@@ -9,7 +9,7 @@ use crate::quality::delivered_quality;
 /// competitor moves take effect tomorrow.
 #[derive(Debug, Clone)]
 pub struct Morning {
-    /// Number of the day.
+    /// Day to which the values belong.
     pub day: u32,
     /// Core settings of the day.
     pub core: CoreSettings,
@@ -27,7 +27,7 @@ pub struct Morning {
     pub shared_quality: f64,
     /// Market drift of each group's curves.
     pub expectations: ByGroup<Expectation>,
-    /// Active subscriptions of each group.
+    /// Number of active subscriptions of each group at the start of the day.
     pub subscribers: ByGroup<u32>,
 }
 

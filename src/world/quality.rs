@@ -79,7 +79,7 @@ pub struct QualityTerms {
     pub delivered: f64,
     /// Quality bonus from the relationship, negative below the neutral point.
     pub relationship: f64,
-    /// Quality bonus from tenure.
+    /// Quality bonus that grows with the number of days as a subscriber.
     pub tenure: f64,
     /// Quota factor, 0..=1, by which quality terms are multiplied.
     pub quota: f64,
@@ -103,10 +103,10 @@ pub fn perceived_quality(experience: QualityTerms, form: PerceivedQuality) -> f6
 /// Returns the demand that is compared with a quota, in units per day or per billing period.
 #[inline]
 pub fn quota_demand(daily_demand_today: f64, daily_rate: f64, params: &Params) -> f64 {
-    let of_period = daily_rate * f64::from(params.billing.billing_period_days);
+    let period_demand = daily_rate * f64::from(params.billing.billing_period_days);
     match params.fidelity.usage_quota {
         UsageQuota::Daily => daily_demand_today,
-        UsageQuota::Period => of_period,
+        UsageQuota::Period => period_demand,
     }
 }
 

@@ -27,7 +27,7 @@ macro_rules! parts {
         pub enum Part { $($(#[$doc])* $name,)* }
 
         impl Part {
-            /// All parts.
+            /// All parts, in the order of their variants.
             pub const ALL: &'static [Part] = &[$(Part::$name,)*];
 
 
@@ -76,7 +76,7 @@ parts! {
     Surge = "surge",
     /// (day): daily step of the hidden PMI.
     Macro = "macro",
-    /// (day): occurrence and gain of a competitor event, and the shares that it copies.
+    /// (day): occurrence and gain of a competitor event, and the copied shares of the quality banks.
     CompetitorEvent = "competitor_event",
     /// (thread, turn): days until an enterprise replies to an offer.
     ReplyDelay = "reply_delay",

@@ -56,7 +56,7 @@ pub struct Spillover {
     pub change: f64,
     /// Weight of the source group for the affected group.
     pub weight: f64,
-    /// Factor that all spillover is multiplied by.
+    /// Factor that applies to every spillover.
     pub factor: f64,
 }
 
@@ -148,7 +148,7 @@ pub struct SpilloverEffect {
     pub source_change: f64,
     /// Weight of the source group for the affected group.
     pub weight: f64,
-    /// Factor that all spillover is multiplied by.
+    /// Factor that applies to every spillover.
     pub factor: f64,
     /// Change in the affected group's reputation, which is applied if `counts` is true.
     pub change: f64,
@@ -189,7 +189,7 @@ pub fn event_damage(subscribers: u32, u: f64, reputation: &Reputation) -> f64 {
 
 /// Applies today's contributions to all reputations, and the spillover of each change to the other known groups.
 pub fn apply_contributions(
-    book: &mut Reputations,
+    reputations: &mut Reputations,
     contributions: &ByGroup<ReputationContribution>,
     is_known: impl Fn(Group) -> bool,
     params: &Params,
@@ -198,7 +198,7 @@ pub fn apply_contributions(
     let reputation = &params.reputation;
     for group in Group::all().filter(|group| contributions[*group].count > 0) {
         let Some(change) = daily_change(&contributions[group], reputation) else { continue };
-        book.add_all(
+        reputations.add_all(
             (group, ReputationCause::Contributions(contributions[group])),
             &[change],
             params,
@@ -212,7 +212,7 @@ pub fn apply_contributions(
             if spill.counts {
                 let (weight, factor) = (spill.weight, reputation.cross_group_spillover_factor);
                 let cause = ReputationCause::Spillover(Spillover { source: group, change, weight, factor });
-                book.add_all((other, cause), &[spill.change], params, on_write);
+                reputations.add_all((other, cause), &[spill.change], params, on_write);
             }
         }
     }
@@ -229,10 +229,10 @@ mod tests {
     /// Returns the reputations after a day with the given `contributions`: group, number of subscribers, satisfaction.
     fn reputation_after(contributions: &[(&str, u32, f64)], start: f64, discovered: &[&str]) -> Reputations {
         let params = Params::bundled();
-        let mut book = Reputations::initial(&params);
+        let mut reputations = Reputations::initial(&params);
         let mut by_group = ByGroup::<ReputationContribution>::default();
         for &(id, count, satisfaction) in contributions {
-            book.set(group(id), start);
+            reputations.set(group(id), start);
             let total = &mut by_group[group(id)];
             total.count += count;
             for _ in 0..count {
@@ -240,13 +240,13 @@ mod tests {
             }
         }
         let known = |group: Group| group.is_initially_known() || discovered.contains(&group.id());
-        apply_contributions(&mut book, &by_group, known, &params, &mut |_| {});
-        book
+        apply_contributions(&mut reputations, &by_group, known, &params, &mut |_| {});
+        reputations
     }
 
-    fn assert_reputations(book: &Reputations, expected: &[(&str, f64)]) {
+    fn assert_reputations(reputations: &Reputations, expected: &[(&str, f64)]) {
         for &(id, value) in expected {
-            let actual = book.get(group(id));
+            let actual = reputations.get(group(id));
             assert!((actual / value - 1.0).abs() < 1e-9, "{id}: got {actual}, expected {value}");
         }
     }
@@ -274,7 +274,7 @@ mod tests {
 
     #[test]
     fn spillover_reaches_known_groups_only() {
-        let book = reputation_after(&[("S3", 2000, -0.4)], 0.5, &["D_S07", "D_S05"]);
+        let reputations = reputation_after(&[("S3", 2000, -0.4)], 0.5, &["D_S07", "D_S05"]);
         let expected = [
             ("S3", 0.495613686286),
             ("S1", 0.499473642354),
@@ -286,7 +286,7 @@ mod tests {
             ("D_S07", 0.499605231766),
             ("D_S06", 0.5),
         ];
-        assert_reputations(&book, &expected);
+        assert_reputations(&reputations, &expected);
     }
 
     #[test]
@@ -318,9 +318,9 @@ mod tests {
         ] {
             assert!((cancel_damage(satisfaction, count, u, reputation) / damage - 1.0).abs() < 1e-9);
         }
-        let mut book = Reputations::initial(&params);
-        book.add(group("S1"), -cancel_damage(-0.3, 10, 0.25, reputation), &params);
-        assert_reputations(&book, &[("S1", 0.499738398)]);
+        let mut reputations = Reputations::initial(&params);
+        reputations.add(group("S1"), -cancel_damage(-0.3, 10, 0.25, reputation), &params);
+        assert_reputations(&reputations, &[("S1", 0.499738398)]);
     }
 
     #[test]

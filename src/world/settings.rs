@@ -46,9 +46,9 @@ pub struct CoreSettings {
     pub tiers: ByPlan<u8>,
     /// Quotas, units per customer per day.
     pub quotas: ByPlan<Quota>,
-    /// Operations, dollars per day.
+    /// General spending on operations, dollars per day.
     pub operations: f64,
-    /// Development, dollars per day.
+    /// Spending on general development, dollars per day.
     pub development: f64,
     /// Rented capacity tier, 0..=7.
     pub capacity_tier: u8,

@@ -21,11 +21,11 @@ pub struct World {
     pub total_days: u32,
     /// Current settings of the player.
     pub settings: Settings,
-    /// Cash of the company.
+    /// Cash, which is the sum of the ledger.
     pub finance: Finance,
     /// The product and its development.
     pub product: Product,
-    /// All customers.
+    /// All customers, and the columns of the active subscribers.
     pub customers: Customers,
     /// Counter that numbers support issues.
     pub issue_counter: IssueCounter,
@@ -42,7 +42,7 @@ canonical! {
 /// The hash of one part of the state. A comparison of these hashes locates differences between runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PartHash {
-    /// Name of the part of the state.
+    /// Name of the part, for instance `customers`.
     pub part: &'static str,
     /// Hash of the part's canonical bytes.
     pub hash: blake3::Hash,

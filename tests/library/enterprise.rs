@@ -393,7 +393,7 @@ fn check_rules_match_tables(run: &mut Session) {
         );
     }
     assert!(asked > 3, "{asked} enterprises asked");
-    let row = threads[0].to_json(run.company().company_names());
+    let row = threads[0].to_json(run.company().enterprise_names());
     for field in ["company", "customer", "asked_plan", "last_offer", "offers_so_far", "needed_quota"] {
         assert!(row.get(field).is_some(), "{field}: {row}");
     }

@@ -8,7 +8,7 @@ use serde_json::Value;
 pub struct Argument {
     /// Name of the argument, or `None` for a bare value.
     pub key: Option<String>,
-    /// Value of the argument.
+    /// Value as JSON; a bare word is a string.
     pub value: Value,
     /// Column of the argument's first character, counted from 1.
     pub column: usize,
@@ -75,7 +75,7 @@ impl<'a> LineParser<'a> {
         self.position += self.remaining().len() - self.remaining().trim_start().len();
     }
 
-    /// Parses a word of letters, digits, dots, dashes and underscores. Returns an empty string if the next character
+    /// Parses a word of letters, digits, dots, hyphens and underscores. Returns an empty string if the next character
     /// is none of these.
     pub fn parse_word(&mut self) -> String {
         let is_word = |letter: char| letter.is_alphanumeric() || ['_', '.', '-'].contains(&letter);

@@ -122,7 +122,8 @@ impl App {
 
     /// Returns an action that works even while a dialog is open. Quitting and redrawing must always be possible.
     fn always_available_action(&self, chord: Chord) -> Option<Action> {
-        let always = [Action::Quit, Action::Redraw, Action::TourContinue, Action::TourBack, Action::TourClose];
+        let always =
+            [Action::Quit, Action::Redraw, Action::TourContinue, Action::TourBack, Action::TourClose];
         let global = self.keys.action(&[Scope::Global], chord)?;
         (always.contains(&global) && !chord.is_text_input()).then_some(global)
     }

@@ -136,7 +136,7 @@ impl App {
     }
 
     fn open_decisions(&mut self) {
-        let Some(names) = self.run().map(|run| run.company.company_names.clone()) else { return };
+        let Some(names) = self.run().map(|run| run.company.enterprise_names.clone()) else { return };
         let Some(viewer) = self.playback_mut() else { return };
         let (title, text) = (
             entry_text::chapter_title(&viewer.position.chapter),

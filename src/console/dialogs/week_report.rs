@@ -16,7 +16,7 @@ use crate::screens::overview::figures::{self, METRICS};
 use novamind_base::formatting::{dollars, grouped_number, pluralize, short_dollars, signed_dollars};
 use novamind_record::figures::WeekFigure;
 use novamind_report::action_items::ActionItem;
-use novamind_report::week::MovedFigure;
+use novamind_report::week::ChangedFigure;
 use novamind_report::{WeekReport, figure_label};
 use novamind_session::identifiers::Group;
 use novamind_session::{IntervalPosition, ScoredForecast};
@@ -85,7 +85,7 @@ impl WeekReportDialog {
     fn figure(&self, context: &ScreenContext<'_>) -> Option<Figure> {
         let name = match self.selected.checked_sub(1) {
             None => METRICS.first()?.name,
-            Some(at) => context.company.last_week.as_ref()?.moved_figures.get(at)?.name,
+            Some(at) => context.company.last_week.as_ref()?.changed_figures.get(at)?.name,
         };
         let figure = WeekFigure::parse_label(name)?;
         let metric = METRICS.iter().find(|metric| WeekFigure::parse_label(metric.name) == Some(figure))?;
@@ -338,11 +338,11 @@ impl WeekReportDialog {
         width: u16,
         room: usize,
     ) -> (SectionLines<'a>, Vec<usize>) {
-        if week_report.moved_figures.is_empty() {
+        if week_report.changed_figures.is_empty() {
             return (vec![Line::from(canvas.span("  none", Role::Dim))], Vec::new());
         }
         let (mut lines, mut starts) = (Vec::new(), Vec::new());
-        for (at, moved_figure) in week_report.moved_figures.iter().enumerate() {
+        for (at, moved_figure) in week_report.changed_figures.iter().enumerate() {
             let of_one = change_lines(canvas, moved_figure, width, self.name_role(at + 1, Role::Text));
             if lines.len() + of_one.len() > room {
                 break;
@@ -357,7 +357,7 @@ impl WeekReportDialog {
 /// Returns the heading of the changes with the number of changes that are shown, if some are omitted. The heading names
 /// the reference period if the two weeks differ in length.
 fn changes_heading(week_report: &WeekReport, shown: usize) -> String {
-    let all = week_report.moved_figures.len();
+    let all = week_report.changed_figures.len();
     let number = if shown < all { format!(" · {shown} of {all}") } else { String::new() };
     match &week_report.short_week_note {
         Some(short) => format!("Most unusual changes{number} · a week {short}"),
@@ -439,7 +439,7 @@ fn decisions_section<'a>(
 /// Formats a change in one or two lines.
 fn change_lines<'a>(
     canvas: &Canvas<'_>,
-    moved_figure: &MovedFigure,
+    moved_figure: &ChangedFigure,
     width: u16,
     name: Role,
 ) -> SectionLines<'a> {
@@ -582,7 +582,7 @@ fn notice_lines<'a>(
 ) -> SectionLines<'a> {
     let times = if times > 1 { format!(" ({times} times)") } else { String::new() };
     let before = format!("  day {day:<4} ");
-    let text = company.company_names.insert_names(&text.split_whitespace().collect::<Vec<_>>().join(" "));
+    let text = company.enterprise_names.insert_names(&text.split_whitespace().collect::<Vec<_>>().join(" "));
     let lines = wrap(&format!("{text}{times}"), usize::from(width).saturating_sub(before.len()));
     let line = |(at, text): (usize, String)| {
         let before = if at == 0 { before.clone() } else { " ".repeat(before.len()) };

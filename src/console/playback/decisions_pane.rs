@@ -63,7 +63,7 @@ impl PlaybackViewer {
                 next = Some(rows.len());
             }
             for (part, (text, role)) in
-                super::entry_text::entry_summary(entry, &context.company.company_names)
+                super::entry_text::entry_summary(entry, &context.company.enterprise_names)
                     .into_iter()
                     .enumerate()
             {

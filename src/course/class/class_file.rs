@@ -22,19 +22,19 @@ const MAX_STUDENTS: u32 = 999;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Class {
-    /// Format version of `class.toml`.
+    /// Format version of the file `class.toml`.
     pub format: u32,
     /// Version of the program that created the class.
     pub program: String,
     /// Name of the class: eight hexadecimal digits.
     pub class: String,
-    /// Time at which the class was created, RFC 3339.
+    /// Time at which the class was created, in RFC 3339 format.
     pub created: String,
     /// The lesson of the class; `None` if a run was handed out.
     pub lesson: Option<ClassLesson>,
     /// The run that was handed out; `None` if a lesson was handed out.
     pub run: Option<ClassSourceRun>,
-    /// The students of the class.
+    /// Students to whom handouts were written.
     #[serde(rename = "student")]
     pub students: Vec<ClassStudent>,
 }
@@ -53,9 +53,9 @@ pub struct ClassLesson {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassSourceRun {
-    /// Name of the instructor's run.
+    /// Run ID of the instructor's run.
     pub run: String,
-    /// Last day of the instructor's run.
+    /// Day up to which the students' runs repeat the instructor's run.
     pub day: u32,
 }
 
@@ -63,15 +63,15 @@ pub struct ClassSourceRun {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassStudent {
-    /// Label of the student.
+    /// Label of the student, such as `S01`.
     pub label: String,
     /// Name of the run that the handout creates.
     pub run: String,
-    /// Seal of the handout.
+    /// Seal of the original handout, which shows whether the handout file was changed.
     pub seal: String,
 }
 
-/// The lesson or run that the instructor hands out to a new class.
+/// What the instructor hands out to a new class.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HandoutSource {
     /// A lesson that every student starts from the beginning.
@@ -84,8 +84,8 @@ impl Class {
     /// Creates the folder of a class with `class.toml` and a handout for every student.
     ///
     /// # Errors
-    /// Returns an error if the folder already contains a class or cannot be written, if `students` is not from 1 to 999, or if
-    /// the run cannot be handed out.
+    /// Returns an error if the folder already contains a class or cannot be written, if `students` is not from 1 to
+    /// 999, or if the run cannot be handed out.
     pub fn create(folder: &Path, what: &HandoutSource, students: u32) -> Result<Class, RunError> {
         if !(1..=MAX_STUDENTS).contains(&students) {
             let message = format!("a class needs 1 to {MAX_STUDENTS} students, not {students}");
@@ -185,8 +185,7 @@ impl Class {
         self.students.iter().find(|student| student.label == label)
     }
 
-    /// Returns the labels of students whose handout file in the folder differs from the original. Missing handouts are
-    /// not listed.
+    /// Returns the labels of students whose handout file no longer has the original content. Ignores missing handouts.
     pub(super) fn altered_handouts(&self, folder: &Path) -> Vec<String> {
         let is_altered = |student: &&ClassStudent| {
             let path = folder.join(format!("{}{HANDOUT_EXTENSION}", student.label));

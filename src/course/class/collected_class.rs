@@ -11,7 +11,7 @@ use novamind_record::lesson::Lesson;
 /// A class with its lesson and its newest collection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CollectedClass {
-    /// The content of `class.toml`.
+    /// Lesson or run of the class, and its students.
     pub class: Class,
     /// The lesson of the class; `None` if a run was handed out.
     pub lesson: Option<Arc<Lesson>>,

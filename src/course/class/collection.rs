@@ -29,19 +29,19 @@ pub struct ClassCollection {
     pub runs: Vec<ClassRun>,
     /// Results of the reference play on the seeds of the submitted runs.
     pub references: Vec<ClassReference>,
-    /// Problems to report to the instructor.
+    /// Problems for the instructor to resolve, such as altered or missing runs.
     pub findings: Vec<ClassFinding>,
-    /// Number of records that are duplicates or earlier states of a collected run and therefore do not count.
+    /// Number of records that do not count, because they are duplicates or earlier states of a collected run.
     pub superseded: u32,
-    /// Number of runs in the searched folders that do not belong to the class.
+    /// Number of runs in the searched folders that belong to no student of the class.
     pub others: u32,
 }
 
-/// The input of a collection.
+/// The class to collect, and the places to search.
 pub struct CollectionInput<'a> {
-    /// The class whose submissions are collected.
+    /// Class whose handouts identify the submissions.
     pub class: &'a Class,
-    /// Folder of the class.
+    /// Folder with `class.toml` and the handouts.
     pub folder: &'a Path,
     /// Folders that are searched recursively for runs and archives.
     pub places: &'a [PathBuf],
@@ -52,15 +52,17 @@ impl ClassCollection {
     /// with the number of processed runs and the total number of runs.
     ///
     /// # Errors
-    /// Returns an error if the folder cannot be read or written, or if the reference play of the lesson cannot be simulated.
+    /// Returns an error if the folder cannot be read or written, or if the reference play of the lesson cannot be
+    /// simulated.
     pub fn collect(
         sources: &CollectionInput<'_>,
         answers: RuleEvaluator,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<ClassCollection, RunError> {
         let lesson = sources.class.stored_lesson(sources.folder)?;
-        let workshop = TemporaryFolder::create_in(sources.folder)?;
-        let mut gathered = collect_runs(sources.places, workshop.path(), workshop.path(), None);
+        let temporary_folder = TemporaryFolder::create_in(sources.folder)?;
+        let mut gathered =
+            collect_runs(sources.places, temporary_folder.path(), temporary_folder.path(), None);
         for found in gathered.runs.iter_mut().chain(gathered.conflicts.values_mut().flatten()) {
             // The first event takes precedence over `run.toml`, which could have been edited.
             if let Ok(derived) = ManifestCheck::read(&found.folder) {
@@ -144,7 +146,7 @@ struct CollectionBuilder<'a> {
 }
 
 impl CollectionBuilder<'_> {
-    /// Returns the label that a path contains as the name of a folder or at the beginning of the file name.
+    /// Returns the student label that a folder of the path has as its name, or that begins the file name.
     fn find_label_in_path(&self, path: &Path) -> Option<String> {
         let begins = |part: &str, label: &str| {
             part.strip_prefix(label)
@@ -159,8 +161,7 @@ impl CollectionBuilder<'_> {
         found.manifest.participant.clone().or_else(|| self.find_label_in_path(&found.source))
     }
 
-    /// Returns whether a run started from a handout of the class, or from the lesson of the class without a
-    /// handout.
+    /// Returns whether a run started from a handout of the class, or from the class's lesson without a handout.
     fn belongs_to_class(&self, manifest: &Manifest) -> bool {
         let class = self.sources.class;
         let has_class_handout = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
@@ -234,8 +235,7 @@ impl CollectionBuilder<'_> {
         }
     }
 
-    /// Returns the reason why a valid record does not count. Returns `None` if the record matches the
-    /// student's handout.
+    /// Returns the reason why a valid record does not count, or `None` if the record matches the student's handout.
     fn find_mismatch(&self, found: &FoundRun, label: &str) -> Option<(RunVerdict, ClassFinding)> {
         let (class, manifest) = (self.sources.class, &found.manifest);
         let (label, run) = (label.to_owned(), manifest.id.clone());
@@ -263,8 +263,8 @@ impl CollectionBuilder<'_> {
         None
     }
 
-    /// Returns whether a run continues the recorded past in the student's handout. Returns `true` if the handout is no
-    /// longer in the folder.
+    /// Returns whether a run begins with the past that is recorded in the student's handout. Returns `true` if the
+    /// handout is no longer in the folder.
     fn starts_with_handout(&self, student: &ClassStudent, found: &FoundRun) -> bool {
         let path = self.sources.folder.join(format!("{}{HANDOUT_EXTENSION}", student.label));
         let Ok(Handout { content: HandoutContent::Run(past), .. }) = Handout::read(&path) else {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
 use novamind_record::figures::WeekFigure;
-use novamind_record::lesson::{GuessForm, Lesson, LessonProgress, Measurement};
+use novamind_record::lesson::{GuessForm, Lesson, LessonProgress, MeasurementSpec};
 use novamind_record::trajectory::record::{Activity, LessonEvent, RecordedLessonEvent};
 use novamind_record::trajectory::{Line, Record};
 use novamind_session::{Integrity, SealKey, Session, measure, read_origin, setting_values};
@@ -18,25 +18,25 @@ use novamind_session::{Integrity, SealKey, Session, measure, read_origin, settin
 pub struct Evidence {
     /// The part of the lesson that the student played, counted from 1.
     pub part: u32,
-    /// Seed of the run.
+    /// Seed of the run, on which the reference play is also simulated.
     pub seed: u64,
     /// Last simulated day of the run.
     pub day: u32,
     /// Whether the run has ended.
     pub is_over: bool,
-    /// Highest number of tries of any step.
+    /// Highest number of tries of a step, over all steps.
     pub tries: u32,
-    /// Number of hints that the student used.
+    /// Number of hints that the student used in all steps.
     pub hints: u32,
     /// Results of the steps of the part.
     pub steps: Vec<StepEvidence>,
     /// Names of the pitfalls, in the order in which the student triggered them.
     pub pitfalls: Vec<String>,
-    /// Day and cash in dollars, on day 0 and after each week.
+    /// Day and cash in dollars: on day 0 and at the end of each week.
     pub cash: Vec<(u32, f64)>,
     /// Mean value of each setting over the weeks in which the student decided.
     pub decisions: BTreeMap<String, f64>,
-    /// Weekly figures of the last week.
+    /// Figures of the last simulated week, by name.
     pub figures: BTreeMap<String, f64>,
 }
 
@@ -45,7 +45,7 @@ pub struct Evidence {
 pub struct StepEvidence {
     /// The student's guess. For a question with choices, the number of the selected choice, counted from 1.
     pub guess: Option<f64>,
-    /// The actual value of the quantity that the student had to guess.
+    /// The actual value of the quantity that the student guessed; `None` before it is measured.
     pub outcome: Option<f64>,
     /// Results of the goals of the step; empty until the step has ended.
     pub goals: Vec<GoalEvidence>,
@@ -54,13 +54,14 @@ pub struct StepEvidence {
 /// The result of a goal of a lesson.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct GoalEvidence {
-    /// Measured value of the goal.
+    /// Measured value of the goal; `None` if it could not be measured.
     pub value: Option<f64>,
-    /// Whether the goal was reached.
+    /// Whether the value meets the bound of the goal.
     pub met: bool,
 }
 
-/// Re-simulates a run, compares every recorded state, and measures the goals and outcomes of its lesson events.
+/// Re-simulates a run and compares every recorded state. Also measures the goals and guessed quantities of its lesson
+/// again and compares them with the recorded events.
 ///
 /// # Errors
 /// Returns an error that names the first event that does not match. Also returns an error if the run is
@@ -125,18 +126,18 @@ impl EvidenceCollector {
     }
 
     /// Describes how the recorded result of a goal or a guess differs from the re-simulated result. Returns `None` if
-    /// both results match.
+    /// they match.
     fn describe_mismatch(&self, session: &mut Session, note: &RecordedLessonEvent) -> Option<String> {
         let lesson_progress = self.lesson_progress.clone()?;
         let step = (note.step as usize).checked_sub(1)?;
         let lesson_step = lesson_progress.step(step)?;
         let number = || (note.number.unwrap_or(1) as usize).checked_sub(1);
-        let measurement: Measurement = match (note.event, lesson_step.guess.as_ref().map(|guess| &guess.form))
-        {
-            (LessonEvent::Goal, _) => lesson_step.goals.get(number()?)?.measurement.clone(),
-            (LessonEvent::Outcome, Some(GuessForm::Number { outcome, .. })) => outcome.clone(),
-            _ => return None,
-        };
+        let measurement: MeasurementSpec =
+            match (note.event, lesson_step.guess.as_ref().map(|guess| &guess.form)) {
+                (LessonEvent::Goal, _) => lesson_step.goals.get(number()?)?.measurement.clone(),
+                (LessonEvent::Outcome, Some(GuessForm::Number { outcome, .. })) => outcome.clone(),
+                _ => return None,
+            };
         let from = lesson_progress.current_part().step_weeks(step).0 * session.params().run.days_per_week;
         let measured = measure(&measurement, session, from).ok().flatten();
         let is_same = match (measured, note.value) {
@@ -219,16 +220,15 @@ fn last_week_figures(session: &Session) -> BTreeMap<String, f64> {
 /// A submitted run with its verdict.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassRun {
-    /// Label in the first event of the run. If there is none, the label in the run's path; empty if there is
-    /// none either.
+    /// Label in the first event of the run, otherwise the label in the run's path; empty if neither contains a label.
     pub label: String,
-    /// Name of the run.
+    /// ID of the run, from its manifest.
     pub run: String,
-    /// Time at which the run started, RFC 3339.
+    /// Time at which the run started, in RFC 3339 format.
     pub created: String,
-    /// Path where the run was found.
+    /// Path of the record in the searched folders, or of the archive that contains it.
     pub source: PathBuf,
-    /// Decision on whether the run counts.
+    /// Whether the run counts, and why not.
     pub verdict: RunVerdict,
     /// Results of the run. The results of an altered run contain only its part and seed.
     pub evidence: Evidence,
@@ -256,7 +256,7 @@ pub enum RunVerdict {
 }
 
 impl RunVerdict {
-    /// Returns the name of the verdict that tables show.
+    /// Returns the name of the verdict for tables.
     pub fn label(self) -> &'static str {
         match self {
             RunVerdict::Finished => "finished",

@@ -1,4 +1,4 @@
-//! Problems with submissions, reported to the instructor.
+//! Problems with submissions, which are reported to the instructor.
 
 use std::path::PathBuf;
 
@@ -32,7 +32,7 @@ pub enum ClassFinding {
         label: String,
         /// Name of the run.
         run: String,
-        /// Paths of the records.
+        /// Where the contradicting records were found.
         paths: Vec<PathBuf>,
     },
     /// A run of a different lesson, or of a different version of the lesson.
@@ -48,7 +48,8 @@ pub enum ClassFinding {
         label: String,
         /// Name of the run.
         run: String,
-        /// Label of the student who received the handout; `None` if only the past of the run differs.
+        /// Label of the student whose handout was used; `None` if the student's own handout was used but the past of
+        /// the run differs from it.
         of: Option<String>,
     },
     /// A run of the lesson that did not start from a handout of this class.
@@ -65,14 +66,14 @@ pub enum ClassFinding {
         /// Label of the student.
         label: String,
     },
-    /// A student who has not finished every part of the lesson.
+    /// A student with unfinished parts of the lesson.
     NotFinished {
         /// Label of the student.
         label: String,
         /// Numbers of the unfinished parts, counted from 1.
         parts: Vec<u32>,
     },
-    /// A handout in the folder of the class that was changed.
+    /// A changed handout in the folder of the class.
     AlteredHandout {
         /// Label of the student.
         label: String,

@@ -1,4 +1,4 @@
-//! Handouts: files from which students start a lesson or continue a run (docs/formats/class.md#handout).
+//! Handouts: files that students use to start a lesson or continue a run (docs/formats/class.md#handout).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,12 +21,12 @@ pub(super) const HANDOUT_FORMAT: u32 = 1;
 
 pub(super) const HANDOUT_EXTENSION: &str = ".nm";
 
-/// The file from which one student starts a lesson or continues a run.
+/// The file that one student uses to start a lesson or continue a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Handout {
-    /// Label of the student.
+    /// Label of the student who receives the handout.
     pub label: String,
-    /// Stamp with the class and the run that the handout creates.
+    /// The class, and the name of the run that the handout creates.
     pub stamp: HandoutStamp,
     /// The lesson or run that was handed out.
     pub content: HandoutContent,
@@ -37,7 +37,7 @@ pub struct Handout {
 pub enum HandoutContent {
     /// A lesson, which starts with its first part.
     Lesson(Arc<Lesson>),
-    /// The files of a run that the student continues.
+    /// A run that the student continues.
     Run(HandoutRunFiles),
 }
 
@@ -45,9 +45,9 @@ pub enum HandoutContent {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandoutRunFiles {
-    /// Content of `run.toml`.
+    /// Content of the file `run.toml`.
     pub manifest: String,
-    /// Content of `trajectory.jsonl`.
+    /// Content of the file `trajectory.jsonl`.
     pub trajectory: String,
 }
 
@@ -59,7 +59,7 @@ struct HandoutFile {
     class: String,
     label: String,
     run: String,
-    /// Hash of the handout file, computed with this field empty.
+    /// Hash of the handout file, computed while this field is empty.
     seal: String,
     lesson: Option<HandoutLesson>,
     past: Option<HandoutRunFiles>,
@@ -135,7 +135,7 @@ impl Handout {
         Ok(Handout { label: file.label, stamp, content })
     }
 
-    /// Writes the handout to a folder and returns the seal of the file.
+    /// Writes the handout to a folder and returns its seal.
     ///
     /// # Errors
     /// Returns an error if the folder cannot be written.
@@ -166,14 +166,14 @@ impl Handout {
         Ok(file.seal)
     }
 
-    /// Returns the seal of a file, or `None` if the file is not a valid handout.
+    /// Returns the seal of a handout file, or `None` if the file is not a valid handout.
     pub(super) fn read_seal(path: &Path) -> Option<String> {
         Handout::read(path).ok()?;
         toml::from_str::<HandoutFile>(&std::fs::read_to_string(path).ok()?).ok().map(|file| file.seal)
     }
 
-    /// Creates the run of this handout in the folder of all runs if it does not exist. Returns the name of the run to
-    /// continue: the newest unfinished run of the handout, otherwise its newest run.
+    /// Creates the run of this handout in the student's folder below `base`, if the run does not exist. Returns the
+    /// name of the run to continue: the newest unfinished run of the handout, otherwise its newest run.
     ///
     /// # Errors
     /// Returns an error if a run of this name exists but did not start from this handout, or if the run
@@ -184,7 +184,8 @@ impl Handout {
             return Ok(run);
         }
         let folder = runs.join(&self.stamp.run);
-        // If the program ended before it wrote the first event, the folder contains none of these files and can be reused.
+        // If the program ended before it wrote the first event, the folder contains none of these files and can be
+        // reused.
         if ["run.toml", "trajectory.jsonl"].iter().any(|file| folder.join(file).exists()) {
             return Err(RunError::AlreadyExists(format!(
                 "{} exists but does not belong to this handout. Nothing was changed. Move the folder away and open the handout \

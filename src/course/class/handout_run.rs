@@ -1,5 +1,5 @@
-//! A run that is handed out. Every student receives a branch from the end of the run's last week, with a
-//! separate label and name.
+//! A run that is handed out. Every student receives a branch from the end of the run's last week, with its own label
+//! and name.
 
 use std::path::Path;
 
@@ -23,11 +23,11 @@ pub(super) struct HandoutRun {
 }
 
 impl HandoutRun {
-    /// Reads and verifies a run that is to be handed out.
+    /// Reads and verifies a run to hand out.
     ///
     /// # Errors
-    /// Returns an error if the run is damaged, is an unfinished baseline run, belongs to a study or a lesson, has no day left,
-    /// or has a language model as judge.
+    /// Returns an error if the run is damaged, is an unfinished baseline run, belongs to a study or a lesson, has no
+    /// day left, or has a language model as judge.
     pub(super) fn from_folder(folder: &Path) -> Result<HandoutRun, RunError> {
         let manifest = ManifestCheck::read(folder)?.manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
@@ -62,7 +62,7 @@ impl HandoutRun {
         &self.manifest.id
     }
 
-    /// Returns the files of a branch for one student. Uses a temporary folder in `parent_folder`.
+    /// Returns the files of a branch for one student. Builds them in a temporary folder inside `parent_folder`.
     ///
     /// # Errors
     /// Returns an error if `parent_folder` cannot be written.
@@ -83,7 +83,7 @@ impl HandoutRun {
             participant: Some(label.to_owned()),
             handout: Some(stamp.clone()),
             rules: Some(SessionRules::for_mode(mode)),
-            // The record's earlier runs and consent belong to the instructor, so the student's copy omits them.
+            // The earlier runs and the consent belong to the instructor, so the student's copy omits them.
             earlier: Vec::new(),
             earlier_runs: 0,
             consent: None,
@@ -93,8 +93,8 @@ impl HandoutRun {
             }),
             ..self.manifest.clone()
         };
-        let workshop = TemporaryFolder::create_in(parent_folder)?;
-        let folder = workshop.path().join(&stamp.run);
+        let temporary_folder = TemporaryFolder::create_in(parent_folder)?;
+        let folder = temporary_folder.path().join(&stamp.run);
         create_branch_files(&folder, &manifest, &self.lines)?;
         let text = |file: &str| {
             let path = folder.join(file);

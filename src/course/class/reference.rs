@@ -13,7 +13,7 @@ use novamind_session::{PartPlay, RuleEvaluator, play_part};
 /// The result of the reference play for one part of the lesson and one seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassReference {
-    /// Results of the reference play, including part and seed.
+    /// Results of the reference play; its `part` and `seed` identify the reference.
     pub evidence: Evidence,
 }
 
@@ -51,16 +51,16 @@ fn play_reference(
     Ok(ClassReference { evidence: session_evidence(&session, session.lesson(), seed) })
 }
 
-/// Returns the step and the goal by which a part is ranked, both counted from 0: the last goal of the last
-/// step that has goals.
+/// Returns the step and the goal that decide the ranking of a part, both counted from 0: the last goal of the last step
+/// that has goals.
 pub fn ranked_goal(part: &LessonPart) -> Option<(usize, usize)> {
     let step = part.steps.iter().rposition(|step| !step.goals.is_empty())?;
     Some((step, part.steps[step].goals.len() - 1))
 }
 
-/// Returns the ratio of a student's value to the reference play's value; higher is better. The ratio is
-/// inverted if the bound of the goal is a maximum. Returns `None` if the denominator or the reference value
-/// is not positive.
+/// Returns a student's value divided by the value of the reference play, so that higher is better. The ratio is
+/// inverted if the bound of the goal is a maximum. Returns `None` if the denominator or the reference value is not
+/// positive.
 pub fn share_of_reference(bound: Option<GoalBound>, value: f64, good: f64) -> Option<f64> {
     let (of, all) = if matches!(bound, Some(GoalBound::AtMost(_))) { (good, value) } else { (value, good) };
     (all > 0.0 && good > 0.0).then(|| of / all)

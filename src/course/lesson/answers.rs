@@ -1,16 +1,17 @@
 //! Actions of a student in a step of a lesson: answering the question and requesting hints.
 
 use super::runs::require_lesson;
-use novamind_record::lesson::{LessonProgress, Measurement};
+use novamind_record::lesson::{LessonProgress, MeasurementSpec};
 use novamind_record::trajectory::record::{LessonEvent, RecordedLessonEvent};
 use novamind_session::{Session, lesson_step, measure};
 use novamind_tools::Rejection;
 
-/// Answers the open question of the current step. `value` is the guessed number, or the number of a choice, counted from 1.
+/// Records the student's guess for the open question of the current step. `value` is the guessed number or, for a
+/// question with choices, the number of the choice, counted from 1.
 ///
 /// # Errors
-/// `no_question` if no question is open, `guess_not_possible` if `value` is not finite or not the number of a choice, `run_over`,
-/// `not_saved`.
+/// `no_question` if no question is open, `guess_not_possible` if `value` is not finite or not the number of a choice,
+/// `run_over`, `not_saved`.
 pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> {
     let awaits =
         |step: &usize| session.lesson().is_some_and(|lesson_progress| lesson_progress.awaits_guess(*step));
@@ -45,18 +46,21 @@ pub fn take_hint(session: &mut Session) -> Result<String, Rejection> {
     Ok(text)
 }
 
-/// Returns the current step, the number of hints used in this step, and the text of the next hint.
+/// Returns the current step, the number of hints already used in this step, and the text of the next hint.
 fn next_hint(session: &Session) -> Option<(usize, usize, String)> {
     let (lesson_progress, step) = (session.lesson()?, lesson_step(session)?);
     let given = lesson_progress.hint_count(step);
     Some((step, given, lesson_progress.lesson.fill_figures(lesson_progress.step(step)?.hints.get(given)?)))
 }
 
-/// Evaluates a measurement over all weeks in which the student could decide, up to the current week.
+/// Evaluates a measurement from the first week in which the student could decide up to the current week.
 ///
 /// # Errors
 /// Returns an error if the SQL statement is rejected or does not return a single number.
-pub fn measure_over_part(measurement: &Measurement, session: &mut Session) -> Result<Option<f64>, String> {
+pub fn measure_over_part(
+    measurement: &MeasurementSpec,
+    session: &mut Session,
+) -> Result<Option<f64>, String> {
     let own_part = session.lesson().map(LessonProgress::current_part);
     let from_week = own_part.map_or(0, |part| part.start_weeks);
     let from_day = from_week * session.params().run.days_per_week;

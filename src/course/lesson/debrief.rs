@@ -35,12 +35,12 @@ pub struct FinishedPart {
     calls: Vec<ScheduledCalls>,
 }
 
-/// The results of a part, with the reference play and the pitfall play on the same seed.
+/// The results of a part, compared with the reference play and the pitfall play on the same seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Debrief {
     /// Title of the lesson.
     pub title: String,
-    /// Learning goal of the lesson.
+    /// What the student should learn from the lesson.
     pub learning_goal: String,
     /// Title of the part, if the lesson has several parts.
     pub part: Option<String>,
@@ -50,21 +50,22 @@ pub struct Debrief {
     pub participant: Option<String>,
     /// Seed of the student's run.
     pub seed: u64,
-    /// Reason why the run ended.
+    /// Reason why the run ended, if it has ended.
     pub ended: Option<RunEndReason>,
     /// First day on which the student decided.
     pub first_day: u32,
     /// Cash of the student's run at the end of each day in dollars, from day 0.
     pub cash_by_day: Vec<f64>,
-    /// Cash curve of the reference play; `None` if the play cannot be simulated.
+    /// Cash curve of the reference play; `None` if the play has no calls in the part or cannot be simulated.
     pub reference: Option<ReferenceCurve>,
-    /// Cash curve of the pitfall play; `None` if the play cannot be simulated.
+    /// Cash curve of the pitfall play; `None` if the reference play has no calls in the part or this play cannot be
+    /// simulated.
     pub bad_play: Option<ReferenceCurve>,
     /// The figure by which the part is judged; `None` if the part is judged by cash.
     pub judged_by: Option<JudgedFigure>,
-    /// First difference between the student's decisions and the reference play.
+    /// Whether and where the student's decisions first differ from the reference play.
     pub comparison: DecisionComparison,
-    /// Questions, goals and results of each step.
+    /// Questions, goals and their results, by step.
     pub steps: Vec<DebriefStep>,
     /// Day and explanation of each pitfall that the student triggered.
     pub pitfalls: Vec<(u32, String)>,
@@ -74,7 +75,7 @@ pub struct Debrief {
 
 impl Debrief {
     /// Returns the names of enterprises. The names depend only on the seed.
-    pub fn company_names(&self) -> EnterpriseNames {
+    pub fn enterprise_names(&self) -> EnterpriseNames {
         EnterpriseNames::new(self.seed, &Params::bundled().personas.email)
     }
 }
@@ -91,9 +92,9 @@ pub struct ReferenceCurve {
 /// The weekly figure by which a part is judged: the figure of the first goal in the last step that has goals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JudgedFigure {
-    /// The weekly figure.
+    /// Weekly figure that the ranked goal measures.
     pub figure: WeekFigure,
-    /// Values of the student's run: day and figure at the end of each week.
+    /// Day and value at the end of each week of the student's run.
     pub actual: Vec<(u32, f64)>,
     /// Values of the reference play; `None` if the play cannot be simulated.
     pub reference: Option<Vec<(u32, f64)>>,
@@ -104,7 +105,7 @@ pub struct JudgedFigure {
 /// Result of comparing the student's decisions with the reference play.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionComparison {
-    /// The decisions differ, first in this week.
+    /// The decisions differ. Contains the first week in which they do.
     Different(FirstDifference),
     /// The decisions are the same in every week.
     Same,
@@ -114,16 +115,16 @@ pub enum DecisionComparison {
     NotComparable,
 }
 
-/// The first week in which the decisions differ from the reference play.
+/// The first week in which the student's decisions differ from those of the reference play.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FirstDifference {
-    /// Week of the company, counted from 1.
+    /// Week of the run, counted from 1.
     pub week: u32,
     /// First day of this week.
     pub day: u32,
     /// The decisions of this week that differ.
     pub decisions: Vec<DifferentDecision>,
-    /// Effect of using the reference play's decisions of this week in the student's run.
+    /// Effect of replacing this week's differing decisions with those of the reference play.
     pub effect: DecisionEffect,
 }
 
@@ -134,7 +135,8 @@ pub enum DecisionEffect {
     Simulated(ReferenceEffect),
     /// The decisions of the reference play are rejected in the student's run.
     Rejected,
-    /// The effect was not simulated: later calls refer to customers by number, and those numbers would change.
+    /// The effect was not simulated, because later calls refer to customers by number, and the replaced decisions would
+    /// change these numbers.
     DifferentCustomers,
 }
 
@@ -151,13 +153,14 @@ impl DecisionEffect {
 /// Results of the student's run, as played and with the decisions of the reference play in one week.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ReferenceEffect {
-    /// Last day of both simulations.
+    /// Last day that both simulations reached.
     pub day: u32,
-    /// Cash with the student's decisions, dollars.
+    /// Cash at the end of `day` with the student's decisions, in dollars.
     pub own: f64,
-    /// Cash with the decisions of the reference play in one week, dollars.
+    /// Cash at the end of `day` with the decisions of the reference play in one week, in dollars.
     pub with: f64,
-    /// Values of the figure by which the part is judged, in both simulations; `None` if the part is judged by cash.
+    /// Values of the judged figure with the student's decisions and with those of the reference play; `None` if the
+    /// part is judged by cash.
     #[serde(skip)]
     pub judged: Option<(f64, f64)>,
 }
@@ -169,10 +172,10 @@ pub struct DebriefStep {
     pub title: String,
     /// Number of tries of the step.
     pub tries: u32,
-    /// Number of hints that were used, and total number of hints.
+    /// Number of hints that the student used, and the number of hints that the step has.
     #[serde(serialize_with = "serialize_hint_usage")]
     pub hints: (usize, usize),
-    /// The question with guess and outcome.
+    /// The question with the student's guess and the actual value; `None` if the step has no question.
     pub question: Option<LessonQuestion>,
     /// The goals of the step.
     pub goals: Vec<GoalStatus>,
@@ -185,8 +188,8 @@ fn serialize_hint_usage<S: Serializer>(
     serde_json::json!({ "used": used, "of": of }).serialize(serializer)
 }
 
-/// Returns the student's tool calls by week. Excludes the calls at the start of the part and the capacity changes of
-/// the lesson.
+/// Returns the student's tool calls by week. Excludes the lesson's own calls: those at the start of the part, and
+/// capacity changes.
 fn student_calls(session: &Session, lesson_progress: &LessonProgress) -> Vec<ScheduledCalls> {
     let part = lesson_progress.current_part();
     let is_set_by_lesson = |tool: ToolId| part.has_automatic_capacity() && tool == ToolId::SetCapacityTier;
@@ -251,8 +254,8 @@ impl FinishedPart {
         })
     }
 
-    /// Computes the debrief of the part. The part is simulated up to four times in memory. `answers`
-    /// evaluates the rules by which plays answer enterprises.
+    /// Computes the debrief of the part. The part is simulated up to four times in memory. `answers` evaluates the
+    /// rules that plays use to answer enterprises.
     pub fn debrief(&self, answers: RuleEvaluator) -> Debrief {
         let plan = &self.lesson_progress.lesson.plan;
         let [good, bad, play_result] = thread::scope(|scope| {
@@ -260,7 +263,8 @@ impl FinishedPart {
             let started = plays.map(|calls| scope.spawn(move || self.simulate_calls(calls, answers)));
             started.map(|play| play.join().ok().flatten())
         });
-        let (part, decides) = (self.lesson_progress.part, plan.good.has_calls_in(self.lesson_progress.part));
+        let (part, decides) =
+            (self.lesson_progress.part, plan.good.has_calls_for_part(self.lesson_progress.part));
         let both = good.as_ref().zip(play_result.as_ref());
         let comparison = match both {
             _ if !decides => DecisionComparison::NoDecisions,
@@ -363,7 +367,8 @@ impl FinishedPart {
         DecisionComparison::Different(FirstDifference { week: before + 1, day, decisions, effect })
     }
 
-    /// Returns whether tool calls of later weeks refer to customers by number. These numbers depend on earlier decisions.
+    /// Returns whether tool calls of later weeks refer to customers by number. These numbers depend on earlier
+    /// decisions.
     fn refers_to_customers_after(&self, week: u32) -> bool {
         let later = self
             .calls
@@ -385,7 +390,7 @@ impl FinishedPart {
         Some(ReferenceEffect { day: played.cash_by_day.len() as u32 - 1, own: value, with, judged })
     }
 
-    /// Returns the student's tool calls with the differing calls of one week replaced by the calls of the reference play.
+    /// Returns the student's tool calls, in which the reference play's calls replace the differing calls of one week.
     fn calls_with_decisions(
         &self,
         week: u32,

@@ -1,4 +1,4 @@
-//! The decisions of a week of a lesson, and the differences between two plays.
+//! The decisions in a week of a lesson, and the differences between two plays.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,7 +22,7 @@ pub(super) struct WeekDecisions {
 pub struct DifferentDecision {
     /// The tool with different settings or calls.
     pub tool: ToolId,
-    /// The difference in settings or calls.
+    /// How the settings or calls of the tool differ.
     #[serde(flatten)]
     pub difference: DecisionDifference,
 }
@@ -31,7 +31,7 @@ pub struct DifferentDecision {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DecisionDifference {
-    /// The tool's settings differ.
+    /// Some settings of the tool differ.
     Settings {
         /// The settings that differ between the two plays.
         settings: Vec<SettingDifference>,
@@ -48,11 +48,11 @@ pub enum DecisionDifference {
 /// A setting that differs between the student's play and the reference play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SettingDifference {
-    /// Name of the setting.
+    /// Path of the argument, such as `content_marketing S1`.
     pub name: String,
-    /// Value in the student's play, or null.
+    /// Value in the student's play; null if the play does not set it.
     pub own: Value,
-    /// Value in the reference play, or null.
+    /// Value in the reference play; null if the play does not set it.
     pub good: Value,
 }
 
@@ -65,7 +65,7 @@ impl WeekDecisions {
         };
         let settings: BTreeMap<ToolId, Map<String, Value>> = ToolId::all().filter_map(setting).collect();
         let today = session.day();
-        let deeds = session.journal().iter().filter_map(|entry| match entry {
+        let one_time_actions = session.journal().iter().filter_map(|entry| match entry {
             JournalEntry::Call { day, tool, args, .. }
                 if *day == today && tool.spec().kind.changes_company() && !settings.contains_key(tool) =>
             {
@@ -73,8 +73,8 @@ impl WeekDecisions {
             }
             _ => None,
         });
-        let deeds = deeds.collect();
-        WeekDecisions { settings, actions: deeds }
+        let one_time_actions = one_time_actions.collect();
+        WeekDecisions { settings, actions: one_time_actions }
     }
 
     fn one_time_calls(&self, tool: ToolId) -> Vec<Value> {
@@ -115,14 +115,14 @@ pub(super) fn different_decisions(
     });
     let done: BTreeSet<ToolId> =
         week_decisions.actions.iter().chain(&good.actions).map(|(tool, _)| *tool).collect();
-    let deeds = done.into_iter().filter_map(|tool| {
+    let one_time_actions = done.into_iter().filter_map(|tool| {
         let (values, good) = (week_decisions.one_time_calls(tool), good.one_time_calls(tool));
         (values != good).then_some(DifferentDecision {
             tool,
             difference: DecisionDifference::Calls { own: values, good },
         })
     });
-    settings.chain(deeds).collect()
+    settings.chain(one_time_actions).collect()
 }
 
 /// Returns whether two values are equal: 12 equals 12.0, and null equals zero.
@@ -134,7 +134,7 @@ fn is_same_value(one: &Value, other: &Value) -> bool {
     }
 }
 
-/// Flattens nested arguments; the keys are their paths, such as `content_marketing S1`.
+/// Flattens nested arguments. The keys of the result are paths, such as `content_marketing S1`.
 fn flatten_arguments(arguments: &Map<String, Value>) -> BTreeMap<String, Value> {
     let mut found = BTreeMap::new();
     for (name, value) in arguments {
@@ -160,9 +160,9 @@ mod tests {
 
     use super::*;
 
-    fn week_decisions(prices: &Value, deeds: &[(ToolId, Value)]) -> WeekDecisions {
+    fn week_decisions(prices: &Value, one_time_actions: &[(ToolId, Value)]) -> WeekDecisions {
         let settings = prices.as_object().cloned().unwrap_or_default();
-        WeekDecisions { settings: [(ToolId::SetPrices, settings)].into(), actions: deeds.to_vec() }
+        WeekDecisions { settings: [(ToolId::SetPrices, settings)].into(), actions: one_time_actions.to_vec() }
     }
 
     #[test]

@@ -15,7 +15,8 @@ pub(super) fn require_lesson(session: &Session) -> Result<&LessonProgress, Rejec
     session.lesson().ok_or_else(|| Rejection::new("not_in_a_lesson", "this run is not part of a lesson"))
 }
 
-/// Retries a step from its beginning in a new run, whose record contains the number of the try. Steps are counted from 0.
+/// Retries a step from its beginning in a new run. The record of the new run contains the number of the try. Steps are
+/// counted from 0.
 ///
 /// # Errors
 /// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved`.
@@ -30,13 +31,13 @@ pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> 
     };
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved_rejection)?;
     let started = lesson_progress.current_part().step_weeks(step).0 * session.params().run.days_per_week;
-    let mut again = create_lesson_branch(folder, session.manifest(), &trajectory, started)?;
+    let mut retry = create_lesson_branch(folder, session.manifest(), &trajectory, started)?;
     // The first guess counts, because the student has seen the outcome.
     if let Some(value) = lesson_progress.guess(step) {
         let about = RecordedLessonEvent::new(LessonEvent::Guess, step as u32 + 1);
-        again.record_lesson_event(RecordedLessonEvent { value: Some(value), ..about })?;
+        retry.record_lesson_event(RecordedLessonEvent { value: Some(value), ..about })?;
     }
-    Ok(again)
+    Ok(retry)
 }
 
 /// Starts a part of the lesson as a new run in the same folder of runs. Parts are counted from 0.

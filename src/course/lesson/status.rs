@@ -1,4 +1,4 @@
-//! The lesson page of a student: task, goals with current values, hints, pitfalls.
+//! The lesson page that a student sees: task, goals with current values, hints and pitfalls.
 
 use serde::Serialize;
 
@@ -16,13 +16,13 @@ pub struct LessonStatus {
     pub title: String,
     /// Title of the part, if the lesson has several parts.
     pub part: Option<String>,
-    /// The current step, counted from 0, or the last started step if the part has ended.
+    /// The current step, counted from 0. After the part has ended, the last step that was started.
     pub step: usize,
     /// Number of steps of the part.
     pub steps: usize,
     /// Title of the step.
     pub step_title: String,
-    /// Text of the step.
+    /// Task of the step.
     pub text: String,
     /// Number of completed weeks of the step, and total number of its weeks.
     pub weeks: (u32, u32),
@@ -34,7 +34,7 @@ pub struct LessonStatus {
     pub goals: Vec<GoalStatus>,
     /// Texts of the hints that the student has used.
     pub hints: Vec<String>,
-    /// Number of hints of the step.
+    /// Number of hints that the step has.
     pub hint_count: usize,
     /// Day and explanation of each pitfall that the student triggered.
     pub pitfalls: Vec<(u32, String)>,
@@ -45,11 +45,11 @@ pub struct LessonStatus {
     /// Number of the next part, counted from 1; `None` unless this part has ended and is not the last part.
     pub next_part: Option<u32>,
     /// Whether the student can compare the run with opponents that play the same seed from day 0. `true` if the lesson
-    /// has ended and its last part starts with an empty company and sets no parameters.
+    /// has ended and its last part started with an empty company and sets no parameters.
     pub has_opponents: bool,
-    /// Names of the available screens besides the Overview; `None` for all screens.
+    /// Names of the screens that are available in addition to the overview; `None` if all screens are available.
     pub screens: Option<Vec<String>>,
-    /// Tools that the student can use; `None` for all tools.
+    /// Tools that the student can use; `None` if all tools are available.
     pub tools: Option<Vec<ToolId>>,
     /// Whether the lesson sets the capacity tier, so that the student cannot set it.
     pub has_automatic_capacity: bool,
@@ -64,7 +64,7 @@ pub struct LessonQuestion {
     pub text: String,
     /// The possible answers; empty if the question asks for a number.
     pub choices: Vec<String>,
-    /// Unit of the number that the question asks for.
+    /// Unit of the guessed number; empty if the question has choices.
     pub unit: String,
     /// The student's guess. For a question with choices, the number of the selected choice, counted from 1.
     pub guess: Option<f64>,
@@ -72,13 +72,13 @@ pub struct LessonQuestion {
     pub outcome: Option<f64>,
     /// Whether the outcome is shown at the end of the part instead of the end of the step.
     #[serde(skip)]
-    pub told_at_end: bool,
+    pub is_shown_at_part_end: bool,
 }
 
 /// A goal of a step and its current value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GoalStatus {
-    /// Text of the goal.
+    /// Text that states the goal for the student.
     pub text: String,
     /// Current value; `None` if the goal cannot be measured yet.
     pub value: Option<f64>,
@@ -86,10 +86,10 @@ pub struct GoalStatus {
     pub bound: Option<f64>,
     /// Whether `bound` is a maximum.
     #[serde(skip)]
-    pub wants_least: bool,
-    /// Required share of the reference play's value, if the goal is relative to the reference play.
+    pub is_bound_maximum: bool,
+    /// Share of the reference play's value that the student must reach; `None` if the goal is an absolute value.
     #[serde(skip)]
-    pub of_good_play: Option<f64>,
+    pub required_reference_share: Option<f64>,
     /// Whether the value is in dollars.
     #[serde(skip)]
     pub in_dollars: bool,
@@ -102,8 +102,8 @@ impl LessonStatus {
     pub fn from_session(session: &mut Session) -> Option<LessonStatus> {
         let lesson_progress = session.lesson()?.clone();
         let part = lesson_progress.current_part();
-        let going = lesson_step(session);
-        let step = going.unwrap_or_else(|| lesson_progress.last_started_step());
+        let current_step = lesson_step(session);
+        let step = current_step.unwrap_or_else(|| lesson_progress.last_started_step());
         let planned_step = part.steps.get(step)?;
         let (begin, end) = part.step_weeks(step);
         let passed = weeks_passed(session).clamp(begin, end) - begin;
@@ -128,11 +128,11 @@ impl LessonStatus {
                 .checked_sub(1)
                 .filter(|_| passed == 0)
                 .and_then(|before| step_result(&lesson_progress, before)),
-            is_finished: going.is_none(),
-            has_opponents: going.is_none()
+            is_finished: current_step.is_none(),
+            has_opponents: current_step.is_none()
                 && next_part.0 > next_part.1
                 && lesson_progress.current_part().starts_empty(),
-            next_part: (going.is_none() && next_part.0 <= next_part.1).then_some(next_part.0),
+            next_part: (current_step.is_none() && next_part.0 <= next_part.1).then_some(next_part.0),
             screens: plan.access.screens.clone(),
             tools: plan.access.tools.clone(),
             has_automatic_capacity: part.has_automatic_capacity(),
@@ -141,7 +141,7 @@ impl LessonStatus {
     }
 }
 
-/// Returns the goals of a step. A goal that is not judged yet is measured up to the current week.
+/// Returns the goals of a step. Goals that are not judged yet show their value up to the current week.
 fn goal_statuses(
     session: &mut Session,
     lesson_progress: &LessonProgress,
@@ -162,13 +162,13 @@ fn goal_statuses(
 }
 
 impl GoalStatus {
-    /// Creates the status of a goal, including the result of a judged goal.
+    /// Creates the status of a goal, with its result if it has been judged.
     pub(super) fn new(
         lesson_progress: &LessonProgress,
         goal: &LessonGoal,
         judged: Option<&RecordedLessonEvent>,
     ) -> GoalStatus {
-        let of_good_play = match goal.bound {
+        let required_reference_share = match goal.bound {
             GoalBound::RelativeToReferencePlay(share) => Some(share),
             GoalBound::AtLeast(_) | GoalBound::AtMost(_) => None,
         };
@@ -176,8 +176,8 @@ impl GoalStatus {
             text: lesson_progress.lesson.fill_figures(&goal.text),
             value: judged.and_then(|note| note.value),
             bound: goal.bound.value(None).or(judged.and_then(|note| note.bound)),
-            wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
-            of_good_play,
+            is_bound_maximum: matches!(goal.bound, GoalBound::AtMost(_)),
+            required_reference_share,
             in_dollars: goal.in_dollars,
             met: judged.and_then(|note| note.met),
         }
@@ -197,7 +197,7 @@ pub(super) fn step_question(lesson_progress: &LessonProgress, step: usize) -> Op
         unit,
         guess: lesson_progress.guess(step),
         outcome,
-        told_at_end: guess.told == OutcomeTiming::Part,
+        is_shown_at_part_end: guess.outcome_timing == OutcomeTiming::Part,
     })
 }
 

@@ -41,10 +41,10 @@ impl LedgerWriter {
         let (next, lead_cost) = (self.next, -self.params.leads.lead_acquisition_cost);
         // If the ledger already contains this day, the day is the newest one.
         let started = self.days.last().filter(|last| last.day() == facts.day);
-        let anew = || {
+        let new_day = || {
             started.map_or_else(|| LedgerDay::new(facts.day, next, lead_cost), |last| LedgerDay::clone(last))
         };
-        let day = self.touched.entry(facts.day).or_insert_with(anew);
+        let day = self.touched.entry(facts.day).or_insert_with(new_day);
         let before = day.len();
         if !facts.arrivals.is_empty() || !facts.payments.is_empty() {
             let leads = facts.arrivals.iter().map(|arrival| arrival.customer).collect();

@@ -35,7 +35,7 @@ impl NoticeWriter {
             new_losses: Vec::new(),
         };
         for loss in writer.inbox.losses.clone().iter() {
-            writer.is_new_loss(loss.customer);
+            writer.mark_loss_repeated(loss.customer);
         }
         writer
     }
@@ -70,7 +70,7 @@ impl NoticeWriter {
         let mut today = 0;
         for loss in facts.notices.iter().filter_map(RepeatedLoss::from_notice) {
             today += 1;
-            if self.is_new_loss(loss.customer) {
+            if self.mark_loss_repeated(loss.customer) {
                 self.new_losses.push(loss);
             }
         }
@@ -78,8 +78,8 @@ impl NoticeWriter {
         (today == known).then_some(today as u32)
     }
 
-    /// Returns whether a customer has no repeated loss yet, and records that the customer now has one.
-    fn is_new_loss(&mut self, customer: u32) -> bool {
+    /// Marks the loss of a customer as repeated. Returns true if the loss was not marked before.
+    fn mark_loss_repeated(&mut self, customer: u32) -> bool {
         let at = customer as usize;
         if self.is_loss_repeated.len() <= at {
             self.is_loss_repeated.resize(at + 1, false);
@@ -90,8 +90,9 @@ impl NoticeWriter {
     /// Returns the inbox day with this number. If the inbox already contains the day, the day is the newest one.
     fn notice_day(&mut self, day: u32) -> &mut NoticeDay {
         let started = self.inbox.days.last().filter(|last| last.day == day);
-        let anew = || started.map_or_else(|| NoticeDay::new(day, self.next), |last| NoticeDay::clone(last));
-        self.days.entry(day).or_insert_with(anew)
+        let new_day =
+            || started.map_or_else(|| NoticeDay::new(day, self.next), |last| NoticeDay::clone(last));
+        self.days.entry(day).or_insert_with(new_day)
     }
 
     /// Writes the changed days and the new repeated losses to the database.

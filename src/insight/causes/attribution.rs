@@ -27,7 +27,7 @@ pub struct ChangeExplanation {
     pub after: f64,
     /// Contributions of the causes, in descending order of their absolute value.
     pub contributions: Vec<CauseContribution>,
-    /// Residual of the change, which no cause explains.
+    /// Part of the change that no cause explains, in the unit of the figure.
     pub residual: f64,
     /// Number of weeks that were re-simulated for the explanation.
     pub simulation_count: usize,
@@ -47,7 +47,7 @@ pub struct CauseContribution {
     pub cause: Cause,
     /// Contribution of the cause to the change, in the unit of the figure.
     pub amount: f64,
-    /// Settings and inputs of the cause that differ between the two weeks.
+    /// Settings and inputs that belong to the cause and differ between the two weeks.
     pub details: Vec<CauseDetail>,
 }
 
@@ -179,7 +179,7 @@ impl WeekResimulation {
         progress: CauseProgressFn<'_>,
     ) -> Option<Vec<CauseContribution>> {
         let all_calls = all_members(calls);
-        // A bit is set for each active cause. The causes without a bit are removed.
+        // In `acting`, the bit of each active cause is set. All other causes are removed.
         let exclusions_for_calls =
             |acting: u32| ExcludedCauses { calls: excluded_members(calls, acting), inputs: 0 };
         let exclusions_for_inputs =

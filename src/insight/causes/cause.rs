@@ -17,7 +17,7 @@ pub enum Cause {
     EarlierPurchases,
     /// A setting that continued in both weeks, whether or not the player changed the setting.
     Continued(SuspendedSetting),
-    /// Market moves in the previous week that affect all days of the explained week.
+    /// Market changes in the previous week that affect all days of the explained week.
     EarlierMarket,
     /// Number of individuals whose billing day fell in the week.
     RenewalsDue,
@@ -29,9 +29,9 @@ pub enum Cause {
     Usage,
     /// All hidden market inputs, merged into one cause.
     Market,
-    /// Moves of competitors.
+    /// Improvements by competitors.
     Competitors,
-    /// Drift of expectations and budgets.
+    /// Slow changes in customers' requirements and budgets.
     Drift,
     /// Changes in channel yields.
     Yields,
@@ -137,14 +137,14 @@ pub enum CauseDetail {
         /// Shares in the previous week and in the explained week, 0 to 1.
         shares: [f64; 2],
     },
-    /// Outcome of the renewals of the explained week without the other causes.
+    /// Outcome of the explained week's renewals in a simulation without the other causes.
     RenewalsCancelled {
         /// Number of renewals that were due.
         bills: u32,
         /// Number of individuals who cancelled.
         cancelled: u32,
     },
-    /// Bills that were due in each week.
+    /// Number and prices of the bills that were due in each week.
     BillsDue {
         /// Number of bills in the previous week and in the explained week.
         bills: [u32; 2],

@@ -1,8 +1,9 @@
-//! Causes that continue: settings that act in both weeks, and moves of the market in the previous week.
+//! Causes that continue: settings that act in both weeks, and market changes in the previous week.
 //!
-//! An unchanged setting can change a figure. Development, for example, raises quality on every day. A continuing cause
-//! is evaluated without any difference between the weeks: both weeks are simulated without the player's calls of the
-//! explained week and with the world inputs of the previous week, once with the cause and once without the cause.
+//! An unchanged setting can change a figure. Development, for example, raises quality on every day. To evaluate a
+//! continuing cause, both weeks are simulated twice, with and without the cause. To remove all other differences
+//! between the weeks, the simulations omit the player's calls of the explained week and use the world inputs of the
+//! previous week.
 
 use super::CauseProgressFn;
 use super::attribution::CauseContribution;
@@ -29,7 +30,7 @@ pub(super) struct TwoWeeks {
     pub due_bills: [ByGroup<DueByIssue>; 2],
 }
 
-/// Returns the causes that continue from the previous week: active settings, and the market if it moved in that week.
+/// Returns the causes that continue from the previous week: active settings, and the market if it changed that week.
 pub(super) fn continued_causes(start: &MemorySnapshot, eve: &MemorySnapshot) -> Vec<Cause> {
     let settings = SuspendedSetting::ALL.into_iter().filter(|setting| setting.is_active(&eve.world.settings));
     let mut causes: Vec<Cause> = settings.map(Cause::Continued).collect();
@@ -43,7 +44,8 @@ pub(super) fn continued_causes(start: &MemorySnapshot, eve: &MemorySnapshot) -> 
 
 impl WeekResimulation {
     /// Returns the contributions of the continuing causes and of the due bills to the change in a figure. The causes
-    /// that differ between the weeks do not explain these contributions. Returns `None` if `progress` stopped the simulations.
+    /// that differ between the weeks do not explain these contributions. Returns `None` if `progress` stopped the
+    /// simulations.
     pub(super) fn continued_contributions(
         &mut self,
         quantity: WeekQuantity,
@@ -66,7 +68,7 @@ impl WeekResimulation {
             let cause = self.continued[*at];
             CauseContribution { cause, amount, details: vec![self.removed_days(cause)] }
         };
-        // The residual is the change without all causes that have a value.
+        // The residual is the change in the simulation without any of the valued causes.
         let due = self.continued_weeks[included_causes(&valued, all, 0) as usize]
             .as_ref()
             .map_or(Vec::new(), |weeks| due_contributions(quantity, weeks));
@@ -93,8 +95,8 @@ impl WeekResimulation {
         Some(())
     }
 
-    /// Simulates the previous week and the explained week with some of the continuing causes, without the player's
-    /// calls of the explained week, and with the world inputs of the previous week.
+    /// Simulates the previous week and the explained week with some of the continuing causes. Omits the player's calls
+    /// of the explained week and uses the world inputs of the previous week.
     fn simulate_two_weeks(
         &self,
         acting: u32,
@@ -149,9 +151,9 @@ impl WeekResimulation {
     }
 }
 
-/// Returns the candidates that can be removed, alone and together, so that the change still has a value. If the change
-/// has no value without several causes, for example conversion without leads, the causes with the smallest effects are
-/// left out. Returns no cause if the change with all causes has no value.
+/// Returns the candidates whose removal, alone or together, leaves a change that has a value. If the change has no
+/// value without several causes, for example conversion without leads, the causes with the smallest effects are left
+/// out. Returns no cause if the change with all causes has no value.
 fn causes_with_values(mut candidates: Vec<usize>, all: u32, change: impl Fn(u32) -> f64) -> Vec<usize> {
     let effect = |at: &usize| (change(all) - change(all & !(1 << at))).abs();
     candidates.retain(|at| !effect(at).is_nan());

@@ -1,4 +1,4 @@
-//! Bills that were due in the two weeks: the part of the residual that they explain.
+//! Bills that were due in the two weeks, and the part of the residual that the bills explain.
 //!
 //! Individuals decide only on their billing day, every 30 days. The number of renewals in a week therefore follows from
 //! signups of earlier weeks, and no cause of the two weeks changes it. Enterprises pay on a billing day that depends on
@@ -6,8 +6,8 @@
 //! in an outcome of bills, for example cancellations, has three parts:
 //!
 //! - the change in the number of bills, at the mean outcome of a bill in the two weeks;
-//! - the change in the open issues of the individuals who are due: individuals are counted by the age of their issue, at
-//!   the mean outcome of each age;
+//! - the change in the open issues of the individuals who are due: individuals are counted by the age of their issue,
+//!   at the mean outcome of each age;
 //! - the change in the outcome of a bill at the same age of the issue, which stays in the residual.
 //!
 //! The parts are computed for each group, so a change in the mix of groups belongs to the number of bills.
@@ -22,37 +22,46 @@ use novamind_record::figures::{SimulatedWeek, WeekFigure};
 use novamind_world::events::Category;
 use novamind_world::identifiers::Group;
 
-/// Returns the contributions of the due bills to the change between two weeks without the other causes. The list is
-/// empty for figures that do not depend on bills.
+/// Returns the contributions of the due bills to the change between two weeks that were simulated without the other
+/// causes. The list is empty for figures that do not depend on bills.
 pub(super) fn due_contributions(quantity: WeekQuantity, weeks: &TwoWeeks) -> Vec<CauseContribution> {
     let individuals: Vec<Group> = Group::all()
         .filter(|group| !group.is_enterprise() && quantity.group().is_none_or(|only| only == *group))
         .collect();
     let enterprises: Vec<Group> = Group::all().filter(|group| group.is_enterprise()).collect();
     match quantity.figure() {
-        WeekFigure::Cancellations => of_cancellations(weeks, &individuals, [1.0, 1.0]),
+        WeekFigure::Cancellations => cancellation_contributions(weeks, &individuals, [1.0, 1.0]),
         WeekFigure::Churn => {
             let before = |week: &SimulatedWeek| {
                 individuals.iter().map(|group| week.groups[*group].subscribers_before).sum::<u32>()
             };
-            of_cancellations(weeks, &individuals, weeks.weeks.each_ref().map(|week| before(week).into()))
+            cancellation_contributions(
+                weeks,
+                &individuals,
+                weeks.weeks.each_ref().map(|week| before(week).into()),
+            )
         }
-        WeekFigure::Subscribers => of_subscribers(weeks, &individuals),
+        WeekFigure::Subscribers => subscriber_contributions(weeks, &individuals),
         WeekFigure::Payments | WeekFigure::Income | WeekFigure::CashChange => {
-            let mut parts = of_payments(Cause::RenewalsDue, weeks, &individuals);
-            parts.extend(of_payments(Cause::EnterpriseBillsDue, weeks, &enterprises));
+            let mut parts = payment_contributions(Cause::RenewalsDue, weeks, &individuals);
+            parts.extend(payment_contributions(Cause::EnterpriseBillsDue, weeks, &enterprises));
             if quantity.figure() == WeekFigure::CashChange {
-                parts.push(of_compute(weeks, -1.0));
+                parts.push(compute_contribution(weeks, -1.0));
             }
             parts
         }
-        WeekFigure::Costs | WeekFigure::RunningCosts => vec![of_compute(weeks, 1.0)],
+        WeekFigure::Costs | WeekFigure::RunningCosts => vec![compute_contribution(weeks, 1.0)],
         _ => Vec::new(),
     }
 }
 
-/// Returns the contributions to cancellations, divided by `denominators`.
-fn of_cancellations(weeks: &TwoWeeks, groups: &[Group], denominators: [f64; 2]) -> Vec<CauseContribution> {
+/// Returns the contributions of the due bills to cancellations, or to churn if `denominators` contains the subscribers
+/// of each week instead of 1.
+fn cancellation_contributions(
+    weeks: &TwoWeeks,
+    groups: &[Group],
+    denominators: [f64; 2],
+) -> Vec<CauseContribution> {
     if denominators.contains(&0.0) {
         return Vec::new();
     }
@@ -64,7 +73,7 @@ fn of_cancellations(weeks: &TwoWeeks, groups: &[Group], denominators: [f64; 2]) 
 }
 
 /// Returns the contribution of the explained week's renewals to the number of subscribers.
-fn of_subscribers(weeks: &TwoWeeks, groups: &[Group]) -> Vec<CauseContribution> {
+fn subscriber_contributions(weeks: &TwoWeeks, groups: &[Group]) -> Vec<CauseContribution> {
     let [_, bills] = sums(weeks, groups, |due| due.bills);
     let [_, cancelled] = sums(weeks, groups, |due| due.cancelled);
     let part = CauseContribution {
@@ -75,8 +84,8 @@ fn of_subscribers(weeks: &TwoWeeks, groups: &[Group]) -> Vec<CauseContribution> 
     if bills > 0 { vec![part] } else { Vec::new() }
 }
 
-/// Returns the contributions to payments.
-fn of_payments(cause: Cause, weeks: &TwoWeeks, groups: &[Group]) -> Vec<CauseContribution> {
+/// Returns the contributions of the due bills to payments, in dollars.
+fn payment_contributions(cause: Cause, weeks: &TwoWeeks, groups: &[Group]) -> Vec<CauseContribution> {
     let bills = sums(weeks, groups, |due| due.bills);
     let dollars = weeks
         .due_bills
@@ -88,7 +97,7 @@ fn of_payments(cause: Cause, weeks: &TwoWeeks, groups: &[Group]) -> Vec<CauseCon
 }
 
 /// Returns the contribution of compute: the change in its cost, times `sign`.
-fn of_compute(weeks: &TwoWeeks, sign: f64) -> CauseContribution {
+fn compute_contribution(weeks: &TwoWeeks, sign: f64) -> CauseContribution {
     let [before, now] = weeks.weeks.each_ref().map(|week| week.category_costs(Category::Compute));
     let [old, new] = weeks.weeks.each_ref().map(|week| week.figures.usage as f64);
     let usage = InputDetail { name: "units without the other causes", old, new, is_share: false };
@@ -99,8 +108,8 @@ fn of_compute(weeks: &TwoWeeks, sign: f64) -> CauseContribution {
     }
 }
 
-/// Returns the contribution of the number of bills, and of the open issues of the subscribers who are due. `read`
-/// returns the volume and the outcome of the bills of a week.
+/// Returns the contributions of the number of bills and of the open issues of the individuals who are due. `read`
+/// returns the volume and the outcome of the bills in a week.
 fn contributions(
     weeks: &TwoWeeks,
     groups: &[Group],
@@ -143,7 +152,7 @@ fn sums(weeks: &TwoWeeks, groups: &[Group], read: fn(&DueBills) -> u32) -> [u32;
 }
 
 /// Returns the part of the change in `outcomes` that the change in `volumes` explains at the mean outcome per volume of
-/// the two weeks. If a week has no volume, the outcome per volume of the other week counts.
+/// the two weeks. If a week has no volume, the outcome per volume of the other week is used.
 fn volume_effect(volumes: [f64; 2], outcomes: [f64; 2]) -> f64 {
     let rates: Vec<f64> = volumes
         .into_iter()

@@ -40,7 +40,7 @@ impl WeekPair<'_> {
     pub(super) fn differing_inputs(&self) -> Vec<(Cause, Vec<CauseDetail>)> {
         let (eve, end) = (&self.start.world.market, &self.after.final_state.world.market);
         let mut found = Vec::new();
-        let mut note = |cause, differs: bool, details: Vec<CauseDetail>| {
+        let mut add_if_different = |cause, differs: bool, details: Vec<CauseDetail>| {
             if differs {
                 found.push((cause, details));
             }
@@ -48,17 +48,21 @@ impl WeekPair<'_> {
         let input = |name, old, new| CauseDetail::Input(InputDetail { name, old, new, is_share: false });
         let share = |name, old, new| CauseDetail::Input(InputDetail { name, old, new, is_share: true });
         let moves = end.competitors.len() - eve.competitors.len();
-        note(Cause::Competitors, moves > 0, vec![CauseDetail::Occurrences(moves, "move")]);
+        add_if_different(Cause::Competitors, moves > 0, vec![CauseDetail::Occurrences(moves, "move")]);
         let drift_params = &self.start.params.drift;
         let drift = self.days().any(|day| novamind_world::customers::drift::is_drift_day(day, drift_params));
-        note(Cause::Drift, drift, vec![CauseDetail::Occurrences(1, "step")]);
-        note(Cause::Yields, end.yields != eve.yields, Vec::new());
+        add_if_different(Cause::Drift, drift, vec![CauseDetail::Occurrences(1, "step")]);
+        add_if_different(Cause::Yields, end.yields != eve.yields, Vec::new());
         let index = input("index", eve.economy.pmi, end.economy.pmi);
-        note(Cause::Economy, eve.economy.pmi != end.economy.pmi, vec![index]);
+        add_if_different(Cause::Economy, eve.economy.pmi != end.economy.pmi, vec![index]);
         let (now, before) = self.surge_factors();
-        note(Cause::Surges, now != before, vec![input("mean factor", mean(&before), mean(&now))]);
+        add_if_different(Cause::Surges, now != before, vec![input("mean factor", mean(&before), mean(&now))]);
         let (now, before) = self.month_day_factors();
-        note(Cause::Calendar, now != before, vec![input("mean factor", mean(&before), mean(&now))]);
+        add_if_different(
+            Cause::Calendar,
+            now != before,
+            vec![input("mean factor", mean(&before), mean(&now))],
+        );
         let service =
             |of: &BranchOutcome, read: fn(&DayFigures) -> f64| of.days.iter().map(read).fold(0.0, f64::max);
         let both = |read| (service(self.before, read), service(self.after, read));
@@ -67,12 +71,13 @@ impl WeekPair<'_> {
             share("peak overload", overload.0, overload.1),
             input("longest outage, minutes", outage.0, outage.1),
         ];
-        note(Cause::Service, true, details);
+        add_if_different(Cause::Service, true, details);
         found
     }
 
-    /// Fixes world inputs at their values of the previous week. `undone` contains the days of the explained week
-    /// without the player's calls. The fixed utilization is computed from the usage on these days.
+    /// Returns the world inputs of `causes`, fixed at their values of the previous week. `undone` contains the days of
+    /// the explained week, simulated without the player's calls. The fixed utilization follows from the usage on these
+    /// days.
     pub(super) fn fix_inputs(
         &self,
         causes: impl Iterator<Item = Cause>,

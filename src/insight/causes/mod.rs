@@ -4,10 +4,10 @@
 //! world inputs that the company does not control. The contribution of a cause is its Shapley value. World inputs are
 //! evaluated without the player's changes. The player's changes are evaluated with the recorded world inputs. The
 //! contribution of a single change is therefore exactly the difference from a branch without the change. Settings and
-//! market moves that continue from the previous week are causes as well (`continued.rs`). So are the bills that were due
-//! in the two weeks without these causes, because different customers have their billing day in each week
-//! (`due_contributions.rs`). In the residual, the same bills have different outcomes: customers differ, and every day has
-//! new random draws.
+//! market changes that continue from the previous week are causes as well (`continued.rs`). The bills that are due are
+//! also causes, because different customers have their billing day in each week. The contributions of these bills are
+//! computed from simulations of the two weeks without the other causes (`due_contributions.rs`). In the residual, the
+//! same bills have different outcomes: customers differ, and every day has new random draws.
 
 mod attribution;
 mod cause;
@@ -48,7 +48,7 @@ pub enum CauseProgress {
 /// A callback that receives the progress and can stop the analysis.
 pub type CauseProgressFn<'a> = &'a (dyn Fn(CauseProgress) -> ControlFlow<()> + Sync);
 
-/// Explains changes in the weekly figures of a run. Caches the simulations for later questions.
+/// An analysis of changes in the weekly figures of a run. Caches its simulations for later questions.
 pub struct CauseAnalysis {
     run: RecordedRun,
     visibility: InputVisibility,
@@ -126,7 +126,7 @@ impl CauseAnalysis {
 }
 
 /// Prepares the answer to a question. If the figure is hidden in unfinished runs, records an inspection first. Returns
-/// the folder for [`CauseAnalysis::explain`].
+/// the run folder, which [`CauseAnalysis`] opens.
 ///
 /// # Errors
 /// `not_in_this_mode`, `not_possible`, `day_unknown`, `not_saved`.
@@ -156,7 +156,7 @@ fn session_visibility(run: &Session) -> Result<InputVisibility, Rejection> {
     input_visibility(run.manifest(), is_over)
 }
 
-/// Returns the folder of the run for [`CauseAnalysis::explain`].
+/// Returns the run folder, which [`CauseAnalysis`] opens.
 ///
 /// # Errors
 /// `not_in_this_mode` for an unfinished baseline run, `not_possible` for a run in memory.

@@ -116,8 +116,8 @@ impl FromStr for WeekQuestion {
     }
 }
 
-/// Returns the length of the figure name at the start of `text`. The name ends before a bracket or before a last word
-/// that starts with a digit.
+/// Returns the length in bytes of the figure name at the start of `text`. The name ends before an opening parenthesis,
+/// or before the last word if that word starts with a digit.
 fn name_length(text: &str) -> usize {
     let week = || {
         let (name, last) = text.trim_end().rsplit_once(char::is_whitespace)?;

@@ -481,7 +481,7 @@ fn continuing_development_explains_rising_conversion() {
             assert_eq!(first.cause, development, "seed {seed}: {why:#?}");
             let days = CauseDetail::Removed { first: (why.week - 2) * 7 + 1, last: why.week * 7 };
             assert_eq!(first.details, [days]);
-            // Every lead subscribes by chance, so the conversion of a week has a binomial error.
+            // Whether a lead subscribes is random, so the conversion of a week has a binomial error.
             let variance = |share: f64, leads: f64| share * (1.0 - share) / leads;
             let error = (variance(why.before, leads.before) + variance(why.after, leads.after)).sqrt();
             assert!(why.residual.abs() < 2.5 * error, "seed {seed}, error {error}: {why:#?}");
@@ -499,7 +499,7 @@ fn residual_of_new_subscribers_is_small_without_changed_settings() {
     }
 }
 
-/// Plays steady prices, with a wave of signups in week 2 that renews in weeks 6 and 7.
+/// Plays a company with steady prices and a wave of signups in week 2. These subscribers renew in weeks 6 and 7.
 fn play_signup_wave(runs: &std::path::Path, seed: u64) -> Session {
     let mut session = begin_company(runs, Mode::Debug, seed);
     change_setting(&mut session, "set_capacity_tier", &json!({"capacity_tier": 3}));
@@ -513,7 +513,7 @@ fn play_signup_wave(runs: &std::path::Path, seed: u64) -> Session {
     session
 }
 
-/// Plays a company that offers every enterprise the price that it asks.
+/// Plays a company that offers every enterprise the price that the enterprise asked for.
 fn play_enterprise_deals(runs: &std::path::Path, seed: u64) -> Session {
     let mut session = begin_company(runs, Mode::Debug, seed);
     for (tool, arguments) in [

@@ -1,4 +1,4 @@
-//! Re-simulations of a week, each without a different set of causes.
+//! Re-simulations of a week, each of which removes a different set of causes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
@@ -27,7 +27,7 @@ use novamind_world::identifiers::{ByGroup, Group};
 /// Number of weeks that are simulated for each set of continuing causes.
 const WEEKS_PER_CONTINUED_SET: usize = 3;
 
-/// Bit masks of the removed causes, by the index of the tool or input.
+/// Bit masks of the removed causes. The position of a bit is the index of the tool or the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ExcludedCauses {
     pub calls: u32,
@@ -63,7 +63,7 @@ pub(super) struct WeekResimulation {
     simulated_weeks: BTreeMap<ExcludedCauses, SimulatedWeek>,
     /// Causes that continue from the previous week.
     pub(super) continued: Vec<Cause>,
-    /// Both weeks with each subset of the continuing causes, by the bit mask of the subset; empty until simulated.
+    /// Simulations of both weeks, indexed by the bit mask of the continuing causes that act; empty until simulated.
     pub(super) continued_weeks: Vec<Option<TwoWeeks>>,
 }
 

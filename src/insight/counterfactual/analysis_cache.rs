@@ -1,5 +1,5 @@
-//! A cache for the analysis of the most recently used record. The next question about the record reuses its
-//! simulations.
+//! A cache for the analysis of the most recently used record. The next question about the same record reuses the
+//! simulations of the analysis.
 
 use std::path::{Path, PathBuf};
 
@@ -30,7 +30,7 @@ impl<T> Default for AnalysisCache<T> {
 }
 
 impl<T: RecordAnalysis> AnalysisCache<T> {
-    /// Returns the analysis of the run in a folder with all recorded events.
+    /// Returns the analysis of the run in a folder, updated with all recorded events.
     ///
     /// # Errors
     /// Same errors as [`RecordAnalysis::open`]; the cache is then empty.

@@ -56,13 +56,13 @@ pub(crate) struct BranchOutcome {
 /// A call that a re-simulation rejects.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RejectedCall {
-    /// Line of the call in the trajectory of the run; `None` for an added call.
+    /// Line of the call in the trajectory of the recorded run; `None` for an added call.
     pub seq: Option<u64>,
     /// Decision day of the call.
     pub day: u32,
-    /// Tool of the rejected call.
+    /// Tool that rejects the call.
     pub tool: ToolId,
-    /// Why the call was rejected.
+    /// Reason for the rejection.
     pub rejection: Rejection,
 }
 
@@ -227,7 +227,8 @@ impl<'a> BranchSimulation<'a> {
         self.simulate_days(until, progress)
     }
 
-    /// Executes a recorded call, unless the edits drop it. Uses changed arguments if the edits contain any.
+    /// Executes a recorded call, with changed arguments if an edit changes them. Skips a dropped call. If the run
+    /// rejected the call and no edit changes it, only records whether the branch would accept it.
     fn replay_call(&mut self, call: &RecordedCall) {
         if self.edits.dropped_lines.contains(&call.seq) {
             return;
@@ -269,7 +270,7 @@ impl<'a> BranchSimulation<'a> {
         Ok(planned.command)
     }
 
-    /// Executes a call and records its rejection, if any.
+    /// Executes a call. If the call is rejected, records the rejection.
     fn apply_call(&mut self, seq: Option<u64>, tool: ToolId, args: &Value, is_new: bool) {
         let RenumberedCall { args: here, missing_customers: absent } = self.renumber_call(tool, args);
         let is_renumbered = here.as_ref().is_some_and(|here| here != args);

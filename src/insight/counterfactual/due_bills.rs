@@ -21,9 +21,9 @@ pub(crate) type DueByIssue = [DueBills; ISSUE_BANDS];
 pub(crate) struct DueBills {
     /// Number of subscribers whose billing day fell in the week.
     pub bills: u32,
-    /// Sum of their monthly prices, dollars.
+    /// Sum of the monthly prices of these subscribers, in dollars.
     pub dollars: f64,
-    /// Dollars that they paid.
+    /// Sum of the payments of these subscribers in the week, in dollars.
     pub paid: f64,
     /// Number of individuals who cancelled instead of paying. Enterprises do not cancel on their billing day.
     pub cancelled: u32,
@@ -49,8 +49,8 @@ impl DueToday<'_> {
         today
     }
 
-    /// Adds the outcomes of the renewals and the bills of enterprises, after the day was simulated. Enterprises are
-    /// billed after all other events of a day, even if they became subscribers on that day.
+    /// Adds the outcomes of the renewals, and the bills of enterprises, after the day has been simulated. Enterprises
+    /// are billed after all other events of a day, even if they became subscribers on that day.
     pub(crate) fn after_day(mut self, world: &World, params: &Params, facts: &Facts) {
         self.add_due(world, params, world.day, Group::is_enterprise);
         self.customers.sort_unstable();

@@ -1,4 +1,4 @@
-//! Edits of recorded days for a re-simulation.
+//! Edits to recorded days for a re-simulation.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -30,11 +30,11 @@ pub(crate) struct Edits {
     pub capacity_rule: Option<UsageBasedCapacity>,
     /// Usage of the week before the re-simulation, for the first adjustment of the capacity.
     pub week_before: Option<WeekFigures>,
-    /// Customer numbers of the run; `None` if every branch has the same numbers.
+    /// Customer numbers of the recorded run; `None` if the branch has the same numbers.
     pub recorded_numbers: Option<Arc<CustomerNumbers>>,
-    /// World inputs with fixed values.
+    /// World inputs that are fixed at given values.
     pub fixed_inputs: FixedInputs,
-    /// Whether the bills that fall due are counted. Only the residual of a why needs them.
+    /// Whether the bills that fall due are counted. Only *why* needs them, for the residual.
     pub counts_due_bills: bool,
     /// Settings that are 0 while days are simulated.
     pub suspended_settings: Vec<SuspendedSetting>,
@@ -76,7 +76,7 @@ pub(crate) struct AddedCall {
 pub(crate) struct AddedSetting {
     /// Decision day; the change is applied after the recorded calls of that day.
     pub day: u32,
-    /// Full key of the parameter.
+    /// Full key of the parameter, for example `demand_surge.probability`.
     pub key: String,
     /// New value of the parameter.
     pub value: Value,

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::ThreadPoolBuilder;
 
-/// A flag with which one simulation stops all others.
+/// A flag that one simulation sets to stop all others.
 pub(crate) struct StopFlag(AtomicBool);
 
 impl StopFlag {
@@ -31,7 +31,7 @@ pub(crate) fn parallel_map<T: Sync, R: Send>(
     work: impl Fn(&T, &StopFlag) -> Option<R> + Sync,
 ) -> Option<Vec<R>> {
     let (next, stopped) = (AtomicUsize::new(0), StopFlag(AtomicBool::new(false)));
-    let take_turns = || {
+    let run_tasks = || {
         let mut found = Vec::new();
         loop {
             let at = next.fetch_add(1, Ordering::Relaxed);
@@ -43,8 +43,8 @@ pub(crate) fn parallel_map<T: Sync, R: Send>(
         }
     };
     let alone = || match ThreadPoolBuilder::new().num_threads(1).build() {
-        Ok(pool) => pool.install(take_turns),
-        Err(_) => take_turns(),
+        Ok(pool) => pool.install(run_tasks),
+        Err(_) => run_tasks(),
     };
     let workers = rayon::current_num_threads().min(tasks.len());
     let mut found = std::thread::scope(|scope| {

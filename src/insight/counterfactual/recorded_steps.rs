@@ -9,7 +9,7 @@ use novamind_record::trajectory::{Line, Record};
 use novamind_session::engine::{ParameterChange, value_to_json};
 use novamind_tools::{ToolId, ToolKind};
 
-/// A recorded step that changed the company.
+/// A recorded step that can change the company.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum RecordedStep {
     /// A tool call that can change the company.
@@ -33,8 +33,8 @@ pub struct RecordedCall {
     pub args: Value,
     /// Whether the run accepted the call.
     pub accepted: bool,
-    /// The call that this call undid or redid, if any. An edit of that call does not change the settings that this
-    /// call restored.
+    /// The call that this call undid or redid; `None` for other calls. An edit of that call does not change the
+    /// settings that this call restored.
     pub reversal: Option<Reversal>,
 }
 
@@ -49,7 +49,7 @@ pub enum RecordedDecision {
         seq: u64,
         /// Decision day of the change.
         day: u32,
-        /// Full key of the parameter.
+        /// Full key of the parameter, for example `demand_surge.probability`.
         key: String,
         /// New value of the parameter.
         value: Value,
@@ -146,8 +146,8 @@ pub(crate) fn steps_from_lines(lines: &[Line]) -> Vec<RecordedStep> {
     lines.iter().filter_map(|line| step_from_line(line, &mut scores)).collect()
 }
 
-/// Returns the step that an event records, if any. Collects scores in `scores` until the event of the simulated days to
-/// which the scores apply.
+/// Returns the step that an event records, or `None` if the event records no step. Collects scores in `scores` until
+/// the event that records the days to which the scores apply.
 fn step_from_line(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<RecordedStep> {
     if let Some(closing) = line.record.closed_days() {
         let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());

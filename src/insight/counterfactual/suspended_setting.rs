@@ -12,7 +12,7 @@ pub enum SuspendedSetting {
     Advertising,
     /// Shared and targeted operations.
     Operations,
-    /// Ongoing discounts and discounts for leads.
+    /// Discounts for subscribers and first-bill discounts.
     Discounts,
     /// Strength of in-app advertising.
     InAppAds,

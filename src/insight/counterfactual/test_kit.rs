@@ -59,7 +59,7 @@ pub(crate) fn play_week(session: &mut Session) {
     session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
 }
 
-/// Plays a debug run in which every waiting enterprise is answered each week.
+/// Plays a debug run in which every enterprise with an open thread receives an offer each week.
 pub(crate) fn play_weeks_with_offers(runs: &Path) -> Session {
     let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
     let mut session = play_weeks(runs, Mode::Debug, 3, None);

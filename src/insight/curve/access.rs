@@ -15,7 +15,7 @@ use novamind_world::retention::renewal::ongoing_discount;
 /// A customer number that does not exist, so that no discount for a single customer applies.
 const NO_CUSTOMER: u32 = 0;
 
-/// Proof that an inspection of a group's traits is permitted and recorded. The true curve requires this proof.
+/// A proof that an inspection of a group's traits is permitted and recorded. The true curve requires this proof.
 #[derive(Debug)]
 pub struct CurveInspection {
     group: Group,
@@ -74,8 +74,8 @@ impl CurveExplorer {
         Ok(CurveExplorer::from_markets(group, basis, offer, markets))
     }
 
-    /// Returns the curve explorer for the estimates of market studies without the points of the curve, for texts that
-    /// contain only the expected decisions of leads.
+    /// Returns the curve explorer for the estimates of market studies, but does not compute the points of the curve.
+    /// The expected decisions of leads do not need the points.
     ///
     /// # Errors
     /// `group_not_discovered`, `guess_first`.
@@ -85,7 +85,7 @@ impl CurveExplorer {
     }
 }
 
-/// Source of a curve, current plans, and the markets that match the estimates: the likely market first.
+/// Source of a curve, current offer, and the markets that match the estimates, with the likely market first.
 type EstimatedMarkets = (CurveBasis, CurrentOffer, Vec<(Expectation, Arc<Params>)>);
 
 fn estimated_markets(run: &Session, group: Group) -> Result<EstimatedMarkets, Rejection> {

@@ -148,7 +148,8 @@ impl CurveExplorer {
         explorer
     }
 
-    /// Creates a curve explorer without the points of the curve, which take much longer than the decisions of leads.
+    /// Creates a curve explorer without the points of the curve, which take much longer to compute than the decisions
+    /// of leads.
     pub(super) fn without_points(
         group: Group,
         basis: CurveBasis,
@@ -210,7 +211,7 @@ impl CurveExplorer {
         self.evaluate(plans, self.discount, &self.ongoing_discounts)
     }
 
-    /// Returns the expected decisions of leads about a single plan without quota and discounts.
+    /// Returns the expected decisions of leads about a single plan without quota or discounts.
     pub fn outcome_at(&self, price: f64, quality: f64) -> CurveOutcome {
         let point = PlanPoint { list_price: price, quality, quota: f64::INFINITY };
         self.evaluate(&ByPlan([point; 3]), 0.0, &ByPlan([0.0; 3]))

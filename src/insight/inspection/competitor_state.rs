@@ -50,7 +50,7 @@ pub struct CompetitorState {
     pub group_banks: Vec<(Group, f64, f64)>,
     /// Increase in the expectations of all groups due to competitors and drift.
     pub common_expectation: f64,
-    /// Past moves with their severity.
+    /// Moves up to the day, each with its severity, in ascending order of day.
     pub moves: Vec<(CompetitorEvent, Severity)>,
     /// Next move; `None` if no move follows before the end of the run.
     pub next_move: Option<NextCompetitorMove>,

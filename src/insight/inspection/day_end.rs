@@ -1,4 +1,4 @@
-//! Recorders of the state at the end of days, for comparisons.
+//! Recorders of the state at the end of each day, for comparisons of days and runs.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -16,7 +16,7 @@ use novamind_world::state::{PartHash, World};
 pub(crate) struct DayEnd {
     /// Hashes of the parts of the state and of the facts of the day.
     pub(crate) parts: Vec<PartHash>,
-    /// Parameters with which the day was simulated.
+    /// Parameters in force on the day.
     pub(crate) params: Params,
     /// Figures by name in a fixed order, including hidden figures.
     pub(crate) figures: Vec<(String, f64)>,
@@ -80,7 +80,7 @@ fn named_figures(world: &World, facts: &Facts) -> Vec<(String, f64)> {
     figures
 }
 
-/// Records the state at the end of selected days.
+/// A recorder of the state at the end of selected days.
 pub(crate) struct DayEndRecorder {
     wanted: Vec<u32>,
     day_ends: Mutex<BTreeMap<u32, DayEnd>>,
@@ -106,7 +106,7 @@ impl DayObserver for DayEndRecorder {
     }
 }
 
-/// Records the state hashes of every day from day 1, and the complete end-of-day data of selected days.
+/// A recorder of the state hashes of every day from day 1, and of the complete end-of-day data of selected days.
 pub(crate) struct StateHashRecorder {
     parts: Mutex<Vec<Vec<PartHash>>>,
     day_ends: DayEndRecorder,

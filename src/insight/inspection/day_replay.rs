@@ -29,12 +29,12 @@ pub fn open_for_inspection(folder: &Path, key: SealKey) -> Result<Session, RunEr
 }
 
 impl Inspector<'_> {
-    /// Re-simulates every day of the run and calls `tell` with each day. Records the inspection in the trajectory.
+    /// Re-simulates every day of the run and calls `report_day` with each day. Records the inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `not_possible`, `not_readable`, `not_saved`.
-    pub fn replay_days(&mut self, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), Rejection> {
+    pub fn replay_days(&mut self, report_day: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), Rejection> {
         let permit = InspectionPermit::start_at_current_state(self.run, "metrics", "days", self.run.day())?;
-        permit.replay(self.run, Arc::new(NoObserver))?.advance(self.run, |_| true, tell)
+        permit.replay(self.run, Arc::new(NoObserver))?.advance(self.run, |_| true, report_day)
     }
 }

@@ -37,7 +37,7 @@ pub struct DayDifference {
     pub first_customers: Vec<CustomerDifference>,
 }
 
-/// The differences of a customer between the states at the end of two days.
+/// The differences in one customer between the states at the end of two days.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CustomerDifference {
     /// Number of the customer whose values differ.

@@ -19,7 +19,7 @@ pub struct EnterpriseView {
     pub group: Group,
     /// Last day of the view.
     pub day: u32,
-    /// Evaluated threads of the enterprise, by day.
+    /// Evaluations of the enterprise's threads, one per thread and day, in ascending order of day.
     pub days: Vec<EnterpriseThreadDay>,
 }
 
@@ -39,15 +39,15 @@ impl EnterpriseView {
         group: Group,
     ) -> Result<EnterpriseView, Rejection> {
         let day = permit.day();
-        let diary = Arc::new(EnterpriseRecorder { customer, days: Mutex::default() });
-        permit.replay_until(run, day, diary.clone())?;
-        let days = std::mem::take(&mut *diary.days.lock().unwrap_or_else(PoisonError::into_inner));
+        let recorder = Arc::new(EnterpriseRecorder { customer, days: Mutex::default() });
+        permit.replay_until(run, day, recorder.clone())?;
+        let days = std::mem::take(&mut *recorder.days.lock().unwrap_or_else(PoisonError::into_inner));
         let days = days.into_iter().filter(|thread_day| thread_day.day <= day).collect();
         Ok(EnterpriseView { customer, group, day, days })
     }
 }
 
-/// Records the open threads of one enterprise on each day.
+/// A recorder of one enterprise's open threads on each day.
 struct EnterpriseRecorder {
     customer: u32,
     days: Mutex<Vec<EnterpriseThreadDay>>,

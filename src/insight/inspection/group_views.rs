@@ -82,9 +82,9 @@ impl Inspector<'_> {
         day: u32,
         read: impl Fn(&GroupDayEnd) -> T,
     ) -> Result<Vec<T>, Rejection> {
-        let diary = self.all_hidden_days(permit, self.cache.hidden_days.records_threads())?;
+        let recorder = self.all_hidden_days(permit, self.cache.hidden_days.records_threads())?;
         let first = (day + 1).saturating_sub(WINDOW_DAYS).max(1);
-        let value_of_day = |day| diary.with_day(day, |seen| read(&seen.groups[group]));
+        let value_of_day = |day| recorder.with_day(day, |seen| read(&seen.groups[group]));
         Ok((first..=day).filter_map(value_of_day).collect())
     }
 

@@ -30,7 +30,7 @@ use novamind_world::state::World;
 pub(crate) struct HiddenDay {
     pub(crate) known_groups: ByGroup<bool>,
     pub(crate) lead_factors: ByGroup<LeadFactors>,
-    /// Word-of-mouth leads of each group before the factors, by source group.
+    /// Word-of-mouth leads of each group, by source group, before the lead factors apply.
     pub(crate) word_of_mouth: ByGroup<Vec<(Group, f64)>>,
     pub(crate) arrived_leads: ByGroup<u32>,
     pub(crate) quality: QualityDay,
@@ -97,7 +97,7 @@ pub(crate) struct MarketDayEnd {
     pub(crate) measured: Option<(Reading, bool)>,
 }
 
-/// Records the hidden state of every simulated day.
+/// A recorder of the hidden state on every simulated day.
 #[derive(Debug, Default)]
 pub(crate) struct HiddenDayRecorder {
     /// Whether threads are recorded, which requires evaluating every plan for every negotiating enterprise on each day.
@@ -232,7 +232,7 @@ impl DayObserver for HiddenDayRecorder {
 }
 
 /// Returns whether the enterprise's answer in a thread can still have an effect. True if the thread is open, or if the
-/// thread is dead and an answer is pending.
+/// thread has ended and an answer is pending.
 fn is_reply_pending(thread: &Thread, reappearing: bool) -> bool {
     thread.is_open() || thread.active_turn(reappearing).is_some_and(|turn| turn.sender == Sender::Agent)
 }

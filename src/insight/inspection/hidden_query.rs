@@ -106,7 +106,7 @@ impl Inspector<'_> {
         if !tables.is_missing_day(table, day) {
             return Ok(());
         }
-        let diary = self.all_hidden_days(permit, keeps_threads)?;
-        tables.append_days(day, ticket, table, &diary).map_err(query_rejection)
+        let day_recorder = self.all_hidden_days(permit, keeps_threads)?;
+        tables.append_days(day, ticket, table, &day_recorder).map_err(query_rejection)
     }
 }

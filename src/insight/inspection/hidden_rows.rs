@@ -172,7 +172,7 @@ fn customer_row(
     row: &Subscriber,
     negotiator: Option<Negotiator>,
 ) -> [HiddenValue; 32] {
-    // The columns with `subscribed` have no meaning without a subscription.
+    // The columns that are computed with `subscribed` are NULL for customers without a subscription.
     let is_subscriber = standing == "subscriber";
     let subscribed = |value: HiddenValue| if is_subscriber { value } else { Null };
     [

@@ -44,7 +44,7 @@ pub struct HiddenValues {
     pub common_expectation: f64,
     /// Day of the next drift; `None` if no drift follows before the end of the run.
     pub next_drift_day: Option<u32>,
-    /// Current index of the economy.
+    /// Index of the economy (PMI) at the end of the day.
     pub pmi: f64,
 }
 

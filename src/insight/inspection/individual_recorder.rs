@@ -46,7 +46,7 @@ pub struct SignupDecision {
     pub signed_up: bool,
 }
 
-/// The outcome of a subscriber's day.
+/// The outcome of a day for a subscription.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SubscriberOutcome {
     /// The subscription continues on the same plan.
@@ -74,11 +74,11 @@ pub struct IndividualDay {
     pub open_issue_days: u32,
     /// Whether the day is a billing day.
     pub is_due: bool,
-    /// Probability of a failed payment on a billing day.
+    /// Probability that the payment fails on a billing day; 0 on other days.
     pub payment_failure: f64,
     /// Evaluated decision, which is also computed on days that are not billing days.
     pub weighed_decision: WeighedDecision,
-    /// Outcome of the day for the subscription.
+    /// What happened to the subscription on the day.
     pub outcome: SubscriberOutcome,
 }
 

@@ -59,9 +59,9 @@ impl IndividualView {
         arrival: u32,
     ) -> Result<IndividualView, Rejection> {
         let day = permit.day();
-        let diary = Arc::new(IndividualRecorder::new(customer, found, arrival));
-        permit.replay_until(run, day, diary.clone())?;
-        let pages = diary.take_record();
+        let recorder = Arc::new(IndividualRecorder::new(customer, found, arrival));
+        permit.replay_until(run, day, recorder.clone())?;
+        let pages = recorder.take_record();
         let Some(first) = pages.signup else {
             return Err(Rejection::new(
                 "not_readable",

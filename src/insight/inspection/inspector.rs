@@ -53,8 +53,8 @@ impl Inspector<'_> {
         permit: &InspectionPermit,
         days: impl IntoIterator<Item = u32>,
     ) -> Result<Vec<HiddenDay>, Rejection> {
-        let diary = self.all_hidden_days(permit, self.cache.hidden_days.records_threads())?;
-        Ok(days.into_iter().filter_map(|day| diary.day(day)).collect())
+        let recorder = self.all_hidden_days(permit, self.cache.hidden_days.records_threads())?;
+        Ok(days.into_iter().filter_map(|day| recorder.day(day)).collect())
     }
 
     /// Returns the hidden state of a completed day.
@@ -78,8 +78,8 @@ impl Inspector<'_> {
     ) -> Result<Arc<HiddenDayRecorder>, Rejection> {
         let kept =
             self.cache.replay.take().filter(|_| self.cache.hidden_days.records_threads() == with_threads);
-        let mut shadow = match kept {
-            Some(shadow) => shadow,
+        let mut run_replay = match kept {
+            Some(run_replay) => run_replay,
             None => {
                 self.cache.hidden_days = Arc::new(if with_threads {
                     HiddenDayRecorder::with_threads()
@@ -91,8 +91,8 @@ impl Inspector<'_> {
         };
         // The copy is removed from the cache first, so that the next inspection restarts the re-simulation after an
         // error.
-        shadow.advance(self.run, |_| true, &mut |_| {})?;
-        self.cache.replay = Some(shadow);
+        run_replay.advance(self.run, |_| true, &mut |_| {})?;
+        self.cache.replay = Some(run_replay);
         Ok(self.cache.hidden_days.clone())
     }
 }

@@ -82,7 +82,7 @@ pub struct LeadEquation {
     pub day: u32,
     /// Whether the group had been discovered by the day. Undiscovered groups have no leads.
     pub is_known: bool,
-    /// Word-of-mouth leads before the factors, by source group.
+    /// Word-of-mouth leads by source group, before the factors apply.
     pub word_of_mouth: Vec<(Group, f64)>,
     /// Actual leads of the day.
     pub actual_leads: u32,
@@ -110,7 +110,7 @@ impl LeadEquation {
         *factor.factor_mut(&mut factors)
     }
 
-    /// Returns each paid channel with its leads before the factors. Omits channels without leads.
+    /// Returns each paid channel with its leads before the factors apply. Omits channels without leads.
     pub fn channels(&self) -> impl Iterator<Item = (Channel, f64)> {
         let paid = self.factors.paid;
         Channel::ALL
@@ -119,7 +119,7 @@ impl LeadEquation {
             .filter(|(_, leads)| *leads > 0.0)
     }
 
-    /// Returns the number of word-of-mouth leads before the factors.
+    /// Returns the number of word-of-mouth leads before the factors apply.
     pub fn word_of_mouth_leads(&self) -> f64 {
         self.factors.network
     }

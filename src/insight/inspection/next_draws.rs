@@ -51,7 +51,7 @@ impl RandomPart {
         RandomPart::Competitors,
     ];
 
-    /// Returns the id of the part in commands and texts.
+    /// Returns the id that commands and texts use for the part.
     pub fn id(self) -> &'static str {
         ["leads", "renewals", "service", "quality", "research", "discovery", "surge", "economy", "rivals"]
             [self as usize]
@@ -123,9 +123,9 @@ pub enum DrawEffect {
         /// Quality gain of the R&D project.
         gain: f64,
     },
-    /// Group that market research would discover, if any.
+    /// Group that market research would discover; `None` if it would discover no group.
     Found(Option<Group>),
-    /// Demand surge that starts on the day, if any.
+    /// Demand surge that starts on the day; `None` if no surge starts.
     Surge(Option<Surge>),
     /// Change in the economy index.
     Index {
@@ -146,7 +146,7 @@ pub struct KeyedDraws {
     pub stream: &'static str,
     /// Names and values of the stream's keys.
     pub key: Vec<(&'static str, u64)>,
-    /// Group of the stream, if any.
+    /// Group whose draws the stream contains; `None` if the draws do not belong to a group.
     pub group: Option<Group>,
     /// First draws of the stream.
     pub draws: Vec<Draw>,

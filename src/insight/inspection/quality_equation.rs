@@ -15,7 +15,7 @@ use novamind_world::state::World;
 /// Sources of the shared quality gain.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct SharedQualityGains {
-    /// Shared quality at the start of the run.
+    /// Quality gain for all groups at the start of the run.
     pub opening: f64,
     /// Quality gain from finished R&D projects.
     pub research: f64,

@@ -19,12 +19,12 @@ pub struct CancellationEffect {
     pub change: f64,
 }
 
-/// The contribution of a group's subscribers to its reputation.
+/// The contribution of a group's subscribers to the reputation in the group.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SubscriberContribution {
     /// Number of contributing subscribers.
     pub subscribers: u32,
-    /// Change due to the subscribers' satisfaction, before the threshold.
+    /// Change due to the subscribers' satisfaction, before the threshold is applied.
     pub requested_change: f64,
     /// Whether the change reached the threshold and was therefore applied.
     pub is_applied: bool,
@@ -52,7 +52,7 @@ pub(crate) struct ReputationDay {
     individual_departures: ByGroup<CancellationEffect>,
     enterprise_departures: ByGroup<CancellationEffect>,
     contributions: ByGroup<SubscriberContribution>,
-    /// Spillovers with a positive weight, in the order of the day.
+    /// Spillovers with a positive weight, in the order in which they occurred.
     spillovers: Vec<SpilloverEffect>,
     bounds: ByGroup<f64>,
     after: ByGroup<f64>,
@@ -60,8 +60,8 @@ pub(crate) struct ReputationDay {
 }
 
 impl ReputationDay {
-    pub(crate) fn at_start_of_day(book: &Reputations) -> ReputationDay {
-        ReputationDay { before: ByGroup::from_fn(|group| book.get(group)), ..ReputationDay::default() }
+    pub(crate) fn at_start_of_day(reputations: &Reputations) -> ReputationDay {
+        ReputationDay { before: ByGroup::from_fn(|group| reputations.get(group)), ..ReputationDay::default() }
     }
 
     /// Adds a change in reputation that a mechanism made.
@@ -117,7 +117,7 @@ pub struct ReputationEquation {
     pub day: u32,
     /// Reputation at the start of the day.
     pub before: f64,
-    /// Effect of cancellations of individuals without an acceptable plan.
+    /// Effect of cancellations by individuals who had no acceptable plan.
     pub individual_departures: CancellationEffect,
     /// Effect of lost enterprises.
     pub enterprise_departures: CancellationEffect,

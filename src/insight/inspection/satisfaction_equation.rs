@@ -61,24 +61,24 @@ impl SatisfactionTerm {
     }
 
     /// Returns the term's value for a subscriber. The sum of all terms is the subscriber's instant satisfaction.
-    fn contribution(self, felt: &SatisfactionTerms) -> f64 {
-        let experience = &felt.experience;
+    fn contribution(self, terms: &SatisfactionTerms) -> f64 {
+        let experience = &terms.experience;
         match self {
-            SatisfactionTerm::Delivered => experience.delivered + felt.service_penalty,
-            SatisfactionTerm::Service => 0.0 - felt.service_penalty,
+            SatisfactionTerm::Delivered => experience.delivered + terms.service_penalty,
+            SatisfactionTerm::Service => 0.0 - terms.service_penalty,
             SatisfactionTerm::Relationship => experience.relationship,
             SatisfactionTerm::Tenure => experience.tenure,
             // Instant satisfaction minus all other terms, because the quota is a factor of several terms.
             SatisfactionTerm::Quota => {
-                felt.perceived
+                terms.perceived
                     - (experience.delivered + experience.relationship + experience.tenure
                         - experience.issues
                         - experience.ads)
             }
             SatisfactionTerm::Issues => 0.0 - experience.issues,
             SatisfactionTerm::Ads => 0.0 - experience.ads,
-            SatisfactionTerm::Required => 0.0 - felt.required,
-            SatisfactionTerm::Expectations => 0.0 - felt.expectation,
+            SatisfactionTerm::Required => 0.0 - terms.required,
+            SatisfactionTerm::Expectations => 0.0 - terms.expectation,
         }
     }
 }

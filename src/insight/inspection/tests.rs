@@ -62,7 +62,7 @@ struct ObservedDay {
     events: Vec<CompetitorEvent>,
 }
 
-/// Observes the simulator's values independently of the hidden-day recorder.
+/// An observer of the simulator's values that is independent of the hidden-day recorder.
 #[derive(Default)]
 struct WorldObserver {
     today: Mutex<ObservedDay>,

@@ -16,7 +16,7 @@ pub struct RenewalPlanTerms {
     /// Terms of the perceived quality.
     #[serde(flatten)]
     pub experience: QualityTerms,
-    /// Perceived quality of the plan.
+    /// Perceived quality of the plan, computed from the terms in `experience`.
     pub quality: f64,
     /// Required quality at the plan's price.
     pub required: f64,
@@ -53,7 +53,7 @@ pub enum DecisionTerm {
 }
 
 impl DecisionTerm {
-    /// All decision terms.
+    /// All terms. Decisive terms with equal surpluses are listed in this order.
     pub const ALL: [DecisionTerm; 10] = [
         DecisionTerm::Issue,
         DecisionTerm::Ads,
@@ -95,7 +95,7 @@ impl DecisionTerm {
 /// A decisive term, with the decision that the individual would make without the term.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DecisiveTerm {
-    /// The term that is removed.
+    /// The term whose removal reverses the decision.
     pub term: DecisionTerm,
     /// Best plan without the term, with its surplus; `None` if no plan is acceptable.
     pub plan: Option<(Plan, f64)>,
@@ -175,7 +175,7 @@ mod tests {
         has_late_issue: bool,
     }
 
-    /// Decomposes the decisions of all individuals.
+    /// An observer that splits the decisions of all individuals into terms.
     #[derive(Default)]
     struct DecisionObserver(Mutex<BTreeMap<u32, ObservedDecision>>);
 

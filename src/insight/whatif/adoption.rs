@@ -104,7 +104,7 @@ fn branch_rejection(refusal: Rejection) -> Rejection {
     Rejection { message, ..refusal }
 }
 
-/// A branch during its simulation.
+/// A branch into which the recorded events of the run are replayed with edits.
 struct BranchAdoption<'a> {
     session: Session,
     rejected: Vec<(u32, String, Rejection)>,

@@ -53,11 +53,11 @@ pub struct BranchFigures {
 pub struct RejectedDecision {
     /// Line of the decision in the record of the run; `None` for an added decision.
     pub seq: Option<u64>,
-    /// Decision day.
+    /// Decision day on which the branch rejects the decision.
     pub day: u32,
-    /// Tool or full key of the parameter.
+    /// Name of the called tool, or full key of the parameter.
     pub name: String,
-    /// Why the decision was rejected.
+    /// Reason for the rejection.
     pub rejection: Rejection,
 }
 
@@ -83,7 +83,7 @@ pub struct CallDifference {
 pub struct ParameterDifference {
     /// Day from which the change applies.
     pub day: u32,
-    /// Full key of the parameter.
+    /// Full key of the parameter, for example `demand_surge.probability`.
     pub key: String,
     /// Value that the run sets; `None` if only the branch sets the parameter.
     pub recorded: Option<Value>,

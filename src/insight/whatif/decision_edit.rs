@@ -37,7 +37,7 @@ pub enum DecisionEdit {
     Drop(u64),
     /// Changes the arguments of the call in the given line.
     Change {
-        /// Line of the edited call.
+        /// Line of the edited call in the record of the run.
         seq: u64,
         /// New arguments of the call.
         args: Value,
@@ -55,7 +55,7 @@ pub enum DecisionEdit {
     Set {
         /// Week, counted from 1, at the start of which the parameter is set; `None` for the first week of the what-if.
         week: Option<u32>,
-        /// Full key of the parameter.
+        /// Full key of the parameter, for example `demand_surge.probability`.
         key: String,
         /// New value of the parameter.
         value: Value,
@@ -85,7 +85,7 @@ pub(super) fn build_edits(
     Ok(edits)
 }
 
-/// Returns the rejection of each edit that [`build_edits`] would reject.
+/// Returns, for each edit, the rejection with which [`build_edits`] would reject it, or `None` if the edit is valid.
 pub(super) fn rejected_edits(
     decided: &[DecisionEdit],
     opening: &BranchStart<'_>,
@@ -205,7 +205,7 @@ impl DecisionEdit {
         }
     }
 
-    /// Returns the edited line, if the edit concerns a single line.
+    /// Returns the line that the edit changes or omits, or `None` if the edit is not limited to one line.
     fn line(&self) -> Option<u64> {
         match self {
             DecisionEdit::Drop(seq) | DecisionEdit::Change { seq, .. } => Some(*seq),
@@ -213,7 +213,7 @@ impl DecisionEdit {
         }
     }
 
-    /// Rejects an edit of a line that an earlier edit of the same branch concerns.
+    /// Rejects an edit of a line that an earlier edit of the same branch already changes or omits.
     fn check_line_is_new(&self, earlier: &[DecisionEdit]) -> Result<(), Rejection> {
         let Some(line) = self.line() else { return Ok(()) };
         match earlier.iter().any(|edit| edit.line() == Some(line)) {
@@ -247,7 +247,7 @@ fn drop_calls_of_tool(tool: ToolId, edits: &mut Edits, moves: &[RecordedStep]) {
     edits.dropped_lines.extend(recorded_calls(moves).filter(|call| call.tool == tool).map(|call| call.seq));
 }
 
-/// Returns the recorded call in a line.
+/// Returns the call that a line of the trajectory records.
 fn find_call(seq: u64, moves: &[RecordedStep]) -> Result<&RecordedCall, Rejection> {
     if let Some(call) = recorded_calls(moves).find(|call| call.seq == seq) {
         return Ok(call);
@@ -481,7 +481,8 @@ fn parse_line_number(number: &str) -> Result<u64, String> {
     number.parse().map_err(|_| format!("{number} is not a line number; for example: drop 57"))
 }
 
-/// Parses arguments as JSON, as `NAME=VALUE` separated by spaces, or as one value of the argument `positional`.
+/// Parses arguments as JSON, as `NAME=VALUE` pairs separated by spaces, or as a single value of the argument
+/// `positional`.
 fn parse_arguments(text: &str, whole: Option<&str>, positional: Option<&str>) -> Result<Value, String> {
     let text = text.trim();
     if text.starts_with('{') {

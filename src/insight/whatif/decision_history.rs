@@ -48,7 +48,7 @@ impl DecisionHistory {
         decision.day() / self.days_per_week() + 1
     }
 
-    /// Returns the decision in a line.
+    /// Returns the decision that a line of the trajectory records.
     pub fn decision(&self, line: u64) -> Option<&RecordedDecision> {
         self.decisions.iter().find(|decision| decision.seq() == line)
     }

@@ -1,4 +1,4 @@
-//! Figures by which branches are compared.
+//! The figures in the comparison of branches.
 
 use crate::counterfactual::branch::BranchOutcome;
 use novamind_record::figures::{FigureUnit, WeekFigures};

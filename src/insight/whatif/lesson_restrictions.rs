@@ -22,13 +22,13 @@ pub(super) fn lesson_state(
     let lesson =
         Lesson::from_run(folder, &stamp.name).map_err(|error| unreadable_record_rejection(&error))?;
     let part = (stamp.part as usize).clamp(1, lesson.plan.parts.len().max(1)) - 1;
-    let moves_capacity = lesson.plan.parts.get(part).is_some_and(LessonPart::has_automatic_capacity);
+    let changes_capacity = lesson.plan.parts.get(part).is_some_and(LessonPart::has_automatic_capacity);
     if past.is_ended {
-        return Ok((None, moves_capacity));
+        return Ok((None, changes_capacity));
     }
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))
         .map_err(|error| unreadable_record_rejection(&error))?;
-    Ok((Some(LessonProgress::from_lines(lesson.into(), part, &trajectory.lines)), moves_capacity))
+    Ok((Some(LessonProgress::from_lines(lesson.into(), part, &trajectory.lines)), changes_capacity))
 }
 
 /// Rejects edits with tools that the lesson has not unlocked.

@@ -59,14 +59,14 @@ const LOOKBACK_WEEKS: u32 = 5;
 /// A callback that receives the number of simulated days and the total, and can stop the simulation.
 pub type WhatIfProgressFn<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
 
-/// Compares a run with branches that have changed decisions.
+/// An analysis that compares a run with branches that have changed decisions.
 pub struct WhatIf {
     folder: PathBuf,
     run: RecordedRun,
     visibility: InputVisibility,
     /// Whether the inspection is recorded, so that hidden figures may be shown.
     shows_hidden: bool,
-    /// Progress in the unfinished lesson of the run, if any.
+    /// Progress in the unfinished lesson of the run; `None` if the run has no unfinished lesson.
     lesson: Option<LessonProgress>,
     /// Whether the lesson of the run changes the capacity automatically. If so, the branches also change the capacity
     /// automatically.
@@ -87,14 +87,14 @@ impl RecordAnalysis for WhatIf {
     fn open(folder: &Path) -> Result<WhatIf, Rejection> {
         let past = RecordedRun::open(folder).map_err(|error| unreadable_record_rejection(&error))?;
         let sight = input_visibility(&past.manifest, past.is_ended)?;
-        let (lesson, moves_capacity) = lesson_state(folder, &past)?;
+        let (lesson, changes_capacity) = lesson_state(folder, &past)?;
         Ok(WhatIf {
             folder: folder.to_owned(),
             run: past,
             visibility: sight,
             shows_hidden: false,
             lesson,
-            automates_capacity: moves_capacity,
+            automates_capacity: changes_capacity,
         })
     }
 
@@ -382,8 +382,9 @@ impl WhatIf {
         }
     }
 
-    /// Returns the last day that can be simulated, with the name of what ends on this day. In an unfinished lesson, the
-    /// simulation stops at the end of the current step, because the next step can ask the student to guess the outcome.
+    /// Returns the last day that can be simulated, and whether the run or a lesson step ends on this day. In an
+    /// unfinished lesson, the simulation stops at the end of the current step, because the next step can ask the
+    /// student to guess the outcome.
     fn last_possible_day(&self) -> (u32, &'static str) {
         let (days, last) = (self.run.days_per_week(), self.run.manifest.days);
         let step_end = self.lesson.as_ref().and_then(|lesson| {
@@ -451,7 +452,7 @@ impl WhatIf {
 }
 
 impl BranchPoint {
-    /// Returns the last day of each week of the run.
+    /// Returns the last day of each simulated week.
     fn week_ends(&self, days_per_week: u32) -> Vec<u32> {
         let from = self.start.world.day;
         let weeks = (self.until - from).div_ceil(days_per_week);
@@ -467,8 +468,8 @@ impl BranchPoint {
         Some(week)
     }
 
-    /// Returns the last day on which a call names a customer who arrived after the start of the branches. The number
-    /// of such a customer differs in a branch with more or fewer customers.
+    /// Returns the last day on which a call names a customer who arrived after the start of the branches. In a branch
+    /// with more or fewer customers, such a customer has another number.
     fn last_day_naming_new_customers(&self, edits: &[Edits]) -> Option<u32> {
         let first_new = self.start.world.customers.next_customer;
         let is_met = |tool, args| highest_customer(tool, args) >= Some(first_new);
@@ -489,7 +490,7 @@ impl BranchPoint {
         kept.chain(changed.map(|call| call.day)).chain(added.map(|call| call.day)).max()
     }
 
-    /// Simulates the days once with each of the edits. Returns `None` if `progress` stopped the simulation.
+    /// Simulates the days once for each element of `edits`. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
     /// `too_many_leads` if a day of a branch exceeds the limits of memory.
@@ -519,8 +520,8 @@ impl BranchPoint {
     }
 }
 
-/// Returns the latest possible first day on which two branches differ: the end of the first week with different
-/// figures, or `None` if all figures are equal.
+/// Returns an upper limit for the first day on which two branches differ: the first day with different figures, or the
+/// last day if only the final states differ. Returns `None` if the branches are equal.
 fn latest_difference_day(one: &BranchOutcome, other: &BranchOutcome) -> Option<u32> {
     let other_figures = one.days.iter().zip(&other.days).find(|(day_figures, their)| day_figures != their);
     if let Some((day, _)) = other_figures {

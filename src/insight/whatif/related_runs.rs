@@ -1,5 +1,5 @@
-//! The tree of related runs. Each branch is shown with its first week, its first different decision, and its current
-//! state.
+//! The tree of related runs. Each branch is listed with its first week, the first decision that differs from its
+//! parent, and its current state.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ pub struct RelatedRun {
 pub struct BranchOrigin {
     /// ID of the parent run.
     pub run: String,
-    /// First week of the branch.
+    /// First week of the branch, counted from 1.
     pub week: u32,
     /// First decision that only the branch or only its parent made; `None` if there is no such decision or the parent
     /// cannot be read.

@@ -8,7 +8,7 @@ use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
 /// The behavior of competitors in one arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CompetitorSetting {
-    /// Name of the setting in tables.
+    /// Name under which tables list the setting.
     pub name: &'static str,
     /// Name of the scenario that configures the competitors.
     pub scenario: &'static str,
@@ -46,12 +46,12 @@ pub const DRAIN_SETTINGS: [CompetitorSetting; 6] = [
     drain_setting("drain to 0.2", "0.0", "0.2"),
 ];
 
-/// Returns the index of the arm that the other arms are compared with.
+/// Returns the index of the arm with which the other arms are compared.
 pub fn reference_arm(settings: &[CompetitorSetting]) -> usize {
     settings.iter().position(|competitor_setting| competitor_setting.name == "default").unwrap_or(0)
 }
 
-/// Returns the arms in which a policy plays each competitor setting.
+/// Returns one arm per competitor setting. `policy` plays in every arm.
 pub fn competitor_arms(policy: &Policy, settings: &[CompetitorSetting], days: u32) -> Vec<Arm> {
     let arm = |competitor_setting: &CompetitorSetting| {
         let mut arm = Arm::new(competitor_setting.name, policy.clone());
@@ -66,7 +66,8 @@ pub fn competitor_arms(policy: &Policy, settings: &[CompetitorSetting], days: u3
     settings.iter().map(arm).collect()
 }
 
-/// Moves arms to another scenario. The differences between an arm's scenario and `default` become overrides.
+/// Changes the scenario of arms but keeps their competitors: the differences between an arm's scenario and `default`
+/// become overrides.
 ///
 /// # Errors
 /// Fails if a scenario is unknown or a parameter is invalid.

@@ -33,8 +33,8 @@ fn copying_hurts_shared_and_draining_hurts_targeted_development() {
         let [off, default, hard] = [0, 1, 2].map(|arm| at(&copy, arm)[seed]);
         assert!(off > default && default >= hard, "{off} {default} {hard}");
     }
-    // If spending is only targeted, default and hard competitors have the same effect, but draining has a
-    // different one.
+    // If all development is targeted, default and hard competitors have the same effect. The drained share does have
+    // an effect.
     let drain = play_arms(
         &targeted,
         &pick(&DRAIN_SETTINGS, &["no drain", "default", "hard", "drain to 0.2"]),

@@ -18,7 +18,7 @@ const LEVEL_SEPARATOR: &str = " / ";
 pub struct PolicyGrid {
     /// Name of the grid.
     pub name: String,
-    /// Description of the grid for readers of the file.
+    /// Description of the grid, which reports repeat as a note; empty if the file has none.
     pub description: String,
     /// Names of the axes, in the order of the file.
     pub axes: Vec<String>,
@@ -156,7 +156,7 @@ impl PolicyGrid {
 const NAME_REQUIREMENT: &str =
     "is one line of text without \" / \", which separates the levels of a combination";
 
-/// Column names of reports, which axes must not use.
+/// Column names that reports use, and that axes must therefore not use.
 const RESERVED_COLUMNS: [&str; 13] = [
     "seed",
     "cash",
@@ -180,7 +180,7 @@ fn is_valid_label_part(name: &str) -> bool {
         && !name.chars().any(|letter| letter.is_control() || ['\u{2028}', '\u{2029}'].contains(&letter))
 }
 
-/// Reads a grid file and locates its errors.
+/// A reader of a grid file that locates errors in the file.
 struct GridReader<'a>(&'a ParameterSource);
 
 impl GridReader<'_> {

@@ -36,7 +36,7 @@ pub fn baseline_report(grid: &PolicyGrid, is_published: bool, results: &Experime
     exhibit
 }
 
-/// Results of an experiment with the rank of each configuration.
+/// The results of an experiment, and the rank of each configuration.
 struct RankedResults<'a> {
     results: &'a ExperimentResults,
     /// Indices of the configurations, sorted by median final cash, highest first.

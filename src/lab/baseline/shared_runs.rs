@@ -30,8 +30,8 @@ fn differ_only_in_floor(one: &Policy, other: &Policy) -> bool {
         && (&one.start, &one.calls, &one.enterprise) == (&other.start, &other.calls, &other.enterprise)
 }
 
-/// Returns whether a run of the representative is also valid for a configuration with another cash floor. The run is valid
-/// unless cash was between the two floors on a decision day.
+/// Returns whether a run of the representative is also valid for a configuration with another cash floor. The run is
+/// valid unless cash was between the two floors on a decision day.
 pub fn is_shared_run(representative: &Policy, policy: &Policy, start_cash: f64, run: &RunResult) -> bool {
     let (low, high) = (cash_floor(representative), cash_floor(policy));
     let decided = run.weeks.iter().take(run.weeks.len().saturating_sub(1)).map(|week| week.cash);

@@ -16,7 +16,7 @@ use novamind_report::plot::sparkline_char;
 use novamind_report::ranking::published_results;
 use novamind_session::Session;
 
-/// A run and the data of its behavior tables.
+/// A run, with the data for its behavior tables.
 pub struct BehaviorRun {
     /// Logbook of the run, with its figures and decisions.
     pub logbook: Logbook,
@@ -65,7 +65,7 @@ fn note_versions(lines: &[Line]) -> Vec<NoteVersion> {
     .collect()
 }
 
-/// Names of the figures in `lab compare`, each with its horizon and column heading.
+/// The figures of the table: name and horizon in `lab compare`, and column heading.
 const FIGURE_COLUMNS: [(&str, &str, &str); 10] = [
     ("survival", "", "survival, days"),
     ("ad spend on the truly best channel", "", "ads on best channel"),

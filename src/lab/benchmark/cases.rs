@@ -276,17 +276,17 @@ fn measure_week(bench: &BenchContext) -> Result<Samples, BenchError> {
 
 /// Numbers of subscribers for which the cost per subscriber is compared, in the default market.
 const SUBSCRIBER_COUNTS: [u32; 3] = [10_000, 40_000, 165_000];
-/// Maximum number of weeks measured per company. After more weeks, the company has grown too far beyond its nominal size.
+/// Maximum number of weeks measured per company. After more weeks, the company has grown too far beyond its nominal
+/// size.
 const MAX_WEEKS_PER_SIZE: usize = 5;
 
-/// Uses one thread. The gain from a second thread depends on its wake-up latency, which is the same for a
-/// company of any size.
+/// Measures the cost per subscriber on one thread. The gain from a second thread depends on its wake-up latency,
+/// which is the same for a company of any size.
 fn measure_scaling(bench: &BenchContext) -> Result<Samples, BenchError> {
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| measure_costs_by_size(bench))
 }
 
-/// Measures one week of each company in turn, so that a slow period of the machine affects all companies
-/// equally.
+/// Measures one week of each company in turn. A slow period of the machine then affects all companies equally.
 fn measure_costs_by_size(bench: &BenchContext) -> Result<Samples, BenchError> {
     // The companies start slightly smaller, because they grow during the measurement.
     let sized_companies = SUBSCRIBER_COUNTS

@@ -14,7 +14,7 @@ pub fn calibration_seconds() -> f64 {
     started.elapsed().as_secs_f64()
 }
 
-/// Each step depends on the previous step and consists of shifts, a multiplication, a division and a root.
+/// Runs steps that each depend on the previous step and consist of shifts, a multiplication, a division and a root.
 fn run_fixed_work(steps: u64) -> f64 {
     let (mut word, mut value) = (0x9e37_79b9_7f4a_7c15_u64, 1.0_f64);
     for _ in 0..steps {

@@ -8,14 +8,14 @@ use crate::runner::{RunSpec, make_decisions, new_run};
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 
-/// Name of the policy that all measured companies use.
+/// Name of the policy that all measured companies play.
 pub const POLICY: &str = "P1a";
 /// Seed of all measured companies.
 pub const SEED: u64 = 42;
 /// Number of weeks after which every subscriber has been billed at least once.
 const FULL_BILLING_WEEKS: u32 = 5;
 
-/// Where the run of a measured company is stored.
+/// The storage of a measured company's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RunStorage {
     /// Memory only, without a database.
@@ -79,7 +79,7 @@ impl MeasuredCompany {
         Ok(MeasuredCompany { session: Session::create(new, &bench.configuration)?, policy })
     }
 
-    /// Creates a company in the default market and plays weeks until the company has at least `subscribers` subscribers.
+    /// Creates a company in the default market and plays weeks until it has at least `subscribers` subscribers.
     pub fn with_subscribers(
         subscribers: u32,
         keep: RunStorage,

@@ -1,8 +1,8 @@
 //! Speed of simulation on this machine: one row per operation that users or programs wait for.
 //!
-//! Each [`BenchCase`] is measured in a separate process, so that its peak memory can be measured. A case returns samples of
-//! one or more [`BenchFigure`]s. The value of a figure is the median of its samples. [`CASES`] covers the simulator.
-//! Other crates can add cases, for example for the console.
+//! Each [`BenchCase`] is measured in a separate process, so that its peak memory can be measured. A case returns
+//! samples of one or more [`BenchFigure`]s. The value of a figure is the median of its samples. [`CASES`] covers the
+//! simulator. Other crates can add cases, for example for the console.
 //!
 //! **Where the subscribers come from.** All cases play the policy P1a (the paper's best configuration) with
 //! seed 42. The 500-day figures play the same company. The company reaches 10,000, 40,000 and 165,000
@@ -56,11 +56,11 @@
 //! The first days of a week are slower with a database than in memory, because both threads slept before the week. A
 //! company in memory is equally slow if the program sleeps for a second before each week.
 //!
-//! **Lower bound.** A day reads and writes about 104 bytes of each subscriber's columns (usage 21, calls and satisfaction
-//! 65, closing 8, billing days 2, the hash of the facts 8), and a seventh of the 171 bytes of a row for the hash of the
-//! state: 128 bytes. One thread of this machine copies 7 GB/s. A day therefore takes at least 3 ms of one thread with
-//! 165,000 subscribers, and 18 ms with a million. The remaining time is spent on arithmetic, signups, payments and
-//! cancellations, not on passes over columns.
+//! **Lower bound.** A day reads and writes about 104 bytes of each subscriber's columns (usage 21, calls and
+//! satisfaction 65, closing 8, billing days 2, the hash of the facts 8), and a seventh of the 171 bytes of a row for
+//! the state hash: 128 bytes. One thread of this machine copies 7 GB/s. A day therefore takes at least 3 ms of one
+//! thread with 165,000 subscribers, and 18 ms with a million. The remaining time is spent on arithmetic, signups,
+//! payments and cancellations, not on passes over columns.
 //!
 //! **Streams.** Every lead and every bill opens a stream. Opening a single stream takes 180 ns (BLAKE3, then
 //! ChaCha8, each of which is a chain of dependent steps). If eight streams are opened at a time, opening a
@@ -86,7 +86,7 @@ pub use cases::{CASES, save_large_company};
 pub use machine::calibration_seconds;
 pub use queries::create_company_for_queries;
 
-/// Unit of a benchmark figure.
+/// The unit of a benchmark figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BenchUnit {

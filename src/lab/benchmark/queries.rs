@@ -12,16 +12,16 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
 use novamind_tools::ToolId;
 
-/// Approximate peak number of subscribers of the company.
+/// Approximate number of subscribers of the company at its peak.
 const SUBSCRIBER_COUNT: u32 = 190_000;
 
-/// Prefix of the names of library query figures.
+/// Prefix of the names of figures that measure a query of the library.
 const FIGURE_NAME_PREFIX: &str = "query ";
 
 const USAGE_30_DAYS_SQL: &str = "SELECT COUNT(*) AS days, SUM(usage_units) AS units FROM daily_usage
     WHERE day > (SELECT MAX(day) FROM service_day) - 30";
 
-/// Figures of the slowest library query, a count over millions of rows, and ten common queries.
+/// Figures for the slowest query of the library, a count over millions of rows, and ten common queries.
 pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::with_target(
         "slowest query of the library at 190,000 subscribers",

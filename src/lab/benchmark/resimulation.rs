@@ -16,9 +16,9 @@ const BRANCH_WEEKS: u32 = 12;
 /// Edits of the alternative branches. One additional branch keeps the decisions of the run.
 const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "set_daily_spend * 1.1"];
 
-/// Figures of what-if branches and causes. A small company grows fast, so the what-if covers weeks in which
-/// the company has 20,000 subscribers on average. For the first answer about a run, the program reads the
-/// record and simulates the run from day 0. Later answers reuse this simulation.
+/// Figures for what-ifs and causes. A small company grows fast, so the what-if covers weeks in which the company has
+/// 20,000 subscribers on average. For the first answer about a run, the program reads the record and simulates the run
+/// from day 0. Later answers reuse this simulation.
 pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::with_target(
         "what if, 4 branches of 12 weeks, 20,000 subscribers: next answer",
@@ -44,7 +44,7 @@ pub const FIGURES: &[BenchFigure] = &[
     ),
 ];
 
-/// Measures companies with the numbers of subscribers in the names of the figures.
+/// Measures companies with the numbers of subscribers that the names of the figures state.
 pub fn measure_resimulation(bench: &BenchContext) -> Result<Samples, BenchError> {
     let mut company = MeasuredCompany::with_subscribers(SMALL_SUBSCRIBERS, RunStorage::Disk, bench)?;
     let small = measure_cause_analysis(&company.session, bench.repetitions)?;

@@ -16,7 +16,7 @@ use novamind_world::params::Params;
 pub struct BoundGroup {
     /// ID of the group.
     pub group: &'static str,
-    /// Number of customers, or seats of enterprises.
+    /// Number of customers, or number of seats in a group of enterprises.
     pub customers: f64,
     /// Price per customer or seat, $ per month.
     pub price: f64,
@@ -79,7 +79,7 @@ pub struct SensitivityRow {
     pub estimate: f64,
 }
 
-/// A group renewal counts as nearly full if the share of satisfied customers exceeds this value.
+/// Share of satisfied customers above which a group renewal counts as nearly full.
 pub const SATISFIED_SHARE: f64 = 0.99;
 
 impl BoundAccount {

@@ -58,7 +58,7 @@ impl AccountLine {
         AccountLine::Estimate,
     ];
 
-    /// Lines that are costs.
+    /// The cost lines, whose sum is [`AccountLine::Costs`].
     pub const COSTS: [AccountLine; 10] = [
         AccountLine::Compute,
         AccountLine::Capacity,

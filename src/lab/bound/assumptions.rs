@@ -1,11 +1,11 @@
 //! Assumptions of the account: the plan with its numbers from the paper.
 
-/// The assumed plan, whose result the account computes.
+/// The plan whose result the account computes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundAssumptions {
     /// Slack: targeted development spending as a multiple of the required spending.
     pub slack: f64,
-    /// Number of days with costs.
+    /// Number of days on which the company has costs.
     pub days: u32,
     /// Length of the run in days, which affects the times and sizes of competitor events.
     pub run_days: u32,

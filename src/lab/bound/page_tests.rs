@@ -7,7 +7,8 @@ use super::{BoundAccount, BoundAssumptions, bound_report, sensitivity};
 use crate::lab_report::{CellValue, LabTable};
 use novamind_world::params::Params;
 
-/// Formats the rows of a table as Markdown. Numbers have one decimal.
+/// Formats the rows of a table as Markdown. Whole numbers below 1,000 have no decimals, numbers below 1 have three
+/// decimals, and all others have one.
 fn rows_to_markdown(table: &LabTable, columns: &[usize]) -> String {
     let cell = |cell_value: &CellValue| match cell_value {
         CellValue::Text(text) => text.clone(),

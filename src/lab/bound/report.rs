@@ -1,5 +1,5 @@
-//! Tables of the account compared with the published account, of its sensitivity to slack, of the groups and
-//! of the assumptions.
+//! Tables of the upper bound: the account compared with the published account, its sensitivity to slack, the groups,
+//! and the assumptions.
 
 use super::account::{BoundAccount, SATISFIED_SHARE, SensitivityRow};
 use super::account_line::AccountLine;

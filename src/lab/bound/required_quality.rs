@@ -15,8 +15,8 @@ pub fn required_quality(group: Group, params: &Params) -> (f64, f64) {
     )
 }
 
-/// Returns the increase in a group's expectations up to a day that is due to competitors and drift. Excludes
-/// the quality that competitors copy from the group's quality bank.
+/// Returns by how much competitors and drift have raised a group's expectations up to a day. Excludes the quality that
+/// competitors copy from the group's quality bank.
 pub fn added_expectation(group: Group, day: u32, quality_path: &SharedQualityPath, params: &Params) -> f64 {
     let applied = (1..day).filter(|day| is_drift_day(*day, &params.drift)).count() as f64;
     let drift_increase =

@@ -6,8 +6,8 @@ use super::shared_quality::SharedQualityPath;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Returns the largest gap between the quality that the mean customer requires and shared quality, over all
-/// renewal days. The unit is quality before the multiplier of the model tier.
+/// Returns the largest gap, over all renewal days, between shared quality and the quality that the mean customer
+/// requires. The unit is quality before the multiplier of the model tier.
 pub fn widest_gap(
     group: Group,
     overload: f64,
@@ -24,7 +24,8 @@ pub fn widest_gap(
     premises.renewals.iter().map(gap).fold(0.0, f64::max)
 }
 
-/// Returns T0, the spending that closes a gap, $ per day: scale (exp(gap / (counted share * mean age * coefficient)) - 1).
+/// Returns T0, the spending that closes a gap, $ per day:
+/// scale (exp(gap / (counted share * mean age * coefficient)) - 1).
 pub fn min_spending(gap: f64, premises: &BoundAssumptions, params: &Params) -> f64 {
     let development = &params.development;
     let counted =

@@ -14,22 +14,22 @@ pub struct ComparisonRow {
     pub figure: String,
     /// Group, horizon in days, or day of the row; empty for a figure of the whole run.
     pub of: String,
-    /// Unit of the values.
+    /// Unit of the values, for example `dollars` or `share`.
     pub unit: &'static str,
     /// Values in the order of the runs; `None` if a run has no value.
     pub values: Vec<Option<f64>>,
-    /// Range of the published values, if any.
+    /// Range of the published values; `None` if no values are published.
     pub published: Option<PublishedRange>,
 }
 
 impl ComparisonRow {
-    /// Returns the measure for the unit of the row.
+    /// Returns the measure that formats values in the unit of the row.
     pub(super) fn measure(&self) -> Measure {
         measure_for_unit(self.unit)
     }
 }
 
-/// Returns the measure, which formats values, for a unit.
+/// Returns the measure that formats values in a unit.
 pub fn measure_for_unit(unit: &str) -> Measure {
     match unit {
         "dollars" => Measure::Dollars,
@@ -47,7 +47,7 @@ pub struct PublishedRange {
     pub least: f64,
     /// Highest published value.
     pub most: f64,
-    /// Description of the published values, because definitions differ.
+    /// Description of the published values, whose definition can differ from the definition of the figure.
     pub what: &'static str,
 }
 
@@ -60,7 +60,7 @@ pub struct Comparison {
     pub participants: Vec<Option<String>>,
     /// Scenario of each run.
     pub scenarios: Vec<String>,
-    /// Generation of the released simulator whose rules each run has.
+    /// Generation of the released simulator whose rules each run uses.
     pub generations: Vec<Interface>,
     /// Last day of each run, and the rule that derived the last day.
     pub horizons: Vec<(u32, HorizonRule)>,

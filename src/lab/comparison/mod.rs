@@ -19,7 +19,7 @@ pub fn compare_runs(runs: &[Logbook]) -> Comparison {
     figures.extend(figures::group_rows(runs));
     let paper = published_results().paper().generation;
     if !runs.iter().any(|run| paper == run.generation.into()) {
-        // The published ranges are of another generation.
+        // The published ranges come from runs of another generation.
         figures.iter_mut().for_each(|row| row.published = None);
     }
     let is_ranked = runs.iter().all(|run| run.generation == runs[0].generation);

@@ -60,7 +60,7 @@ fn condition_rows(comparison: &Comparison) -> [Vec<String>; 3] {
     ]
 }
 
-/// Describes a last day, with the rule unless it is exact: `497 (whole_weeks_below)`.
+/// Describes a last day, followed by the horizon rule unless the rule is `Exact`: `497 (whole_weeks_below)`.
 pub(super) fn describe_horizon((days, rule): &(u32, HorizonRule)) -> String {
     match rule {
         HorizonRule::Exact => days.to_string(),

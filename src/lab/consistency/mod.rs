@@ -20,7 +20,7 @@ pub use random_draws::PlayEnd;
 /// Difference between the control seed and the tested seed.
 const CONTROL_SEED_OFFSET: u64 = 1_000_003;
 
-/// Which values of two plays are compared.
+/// The rule that selects the values of two plays to compare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ComparedKeys {
     /// Values that both plays have. The plays can have different numbers of values, for example of attempts.
@@ -161,7 +161,7 @@ pub enum ClaimOutcome {
 }
 
 impl ClaimOutcome {
-    /// Returns the label of the outcome in tables.
+    /// Returns the label that tables show for the outcome.
     pub fn label(self) -> &'static str {
         match self {
             ClaimOutcome::Holds => "holds",
@@ -187,7 +187,7 @@ pub struct ClaimResult {
     pub compared_with_other_seed: usize,
     /// Number of values that differ under the control seed.
     pub different_under_other_seed: usize,
-    /// Description of the first difference.
+    /// Key and seed of the first difference; `None` if no value differs.
     pub first_difference: Option<String>,
     /// Outcome of the test.
     pub outcome: ClaimOutcome,
@@ -200,7 +200,7 @@ pub struct ConsistencyCheck {
     pub policies: [String; 2],
     /// Results of both policies on the first seed.
     pub ends: [PlayEnd; 2],
-    /// Whether both policies ended in the same state on every seed, in which case nothing was tested.
+    /// Whether both policies ended in the same state on every seed. If so, nothing was tested.
     pub ends_in_same_state: bool,
     /// Whether one policy switches demand surges off but was played with demand surges.
     pub equalizes_surges: bool,
@@ -239,7 +239,7 @@ pub struct ConsistencySpec {
     pub seeds: Vec<u64>,
     /// Name of the scenario; `None` for the scenario of the policies.
     pub scenario: Option<String>,
-    /// Last simulated day. The nominal length of the run does not change.
+    /// Last simulated day; `None` for the last day of the run. The nominal length of the run does not change.
     pub until: Option<u32>,
 }
 
@@ -251,7 +251,7 @@ impl ConsistencySpec {
         (one.start.surges != other.start.surges).then_some(true)
     }
 
-    /// Returns the reason why two policies cannot be compared, if any.
+    /// Returns the reason why two policies cannot be compared, or `None` if they can be compared.
     pub fn incomparability_reason(&self, policies: &[Policy; 2]) -> Option<&'static str> {
         let [one, other] = policies.each_ref().map(|policy| &policy.start);
         match self.scenario {
@@ -341,7 +341,7 @@ impl SeedPlays {
     }
 }
 
-/// Counts of the compared and the different values of plays.
+/// Numbers of compared values and of different values in two plays.
 #[derive(Debug, Default)]
 struct Differences {
     compared: usize,

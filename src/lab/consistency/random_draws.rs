@@ -10,10 +10,10 @@ use novamind_session::{DayReport, HiddenState, Session};
 use novamind_tools::{Answer, DiscoveryAttempt, Rejection};
 use novamind_world::identifiers::{Channel, Group};
 
-/// Key of a random outcome: a day, an attempt, or a customer of a group.
+/// The key of a random outcome: a day, an attempt, or a customer of a group.
 pub type DrawKey = [u32; 2];
 
-/// Random outcome as bit patterns of up to four numbers.
+/// A random outcome as bit patterns of up to four numbers.
 pub type DrawValue = [u64; 4];
 
 /// Random outcomes by key.
@@ -44,7 +44,7 @@ pub struct PlayDraws {
     pub outages: DrawMap,
     /// Hash of the whole state after the last day.
     pub state: DrawMap,
-    /// Last day, cash, number of leads and number of discovered groups of the play.
+    /// State of the company at the end of the play.
     pub end: PlayEnd,
 }
 

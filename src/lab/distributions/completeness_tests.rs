@@ -101,18 +101,18 @@ fn draw_names_are_unique_and_parameters_exist() {
     assert_eq!(names.len(), count);
 }
 
-/// Checks that the sample moments equal the exact moments. The tolerance corresponds to a false alarm rate of
+/// Checks that the sample moments agree with the exact moments. The tolerance corresponds to a false alarm rate of
 /// about 1 in 10,000.
 #[test]
 fn simulator_draws_match_their_distributions() {
     const DRAWS: u64 = 20_000;
-    let luck = DrawContext { params: Params::bundled(), streams: Streams::new(84) };
+    let context = DrawContext { params: Params::bundled(), streams: Streams::new(84) };
     for world_draw in world_draws() {
-        let members = world_draw.family.members(&luck.params);
+        let members = world_draw.family.members(&context.params);
         let (first, last) = (&members[0], &members[members.len() - 1]);
         for (member, name) in [first, last] {
-            let draws = world_draw.draws(&luck, *member, DRAWS);
-            let exact = (world_draw.distribution)(&luck.params, *member).moments();
+            let draws = world_draw.draws(&context, *member, DRAWS);
+            let exact = (world_draw.distribution)(&context.params, *member).moments();
             let count = DRAWS as f64;
             let mean = draws.iter().sum::<f64>() / count;
             let power = |power: f64| {

@@ -16,12 +16,12 @@ const INFINITE: f64 = f64::INFINITY;
 /// Expected number of leads on the example day.
 const EXPECTED_LEADS: f64 = 12.0;
 
-fn example_traits(luck: &DrawContext, member: usize, n: u64) -> Traits {
-    draw_traits(group_at(member), n as u32, 1.0, &luck.params, &luck.streams)
+fn example_traits(context: &DrawContext, member: usize, n: u64) -> Traits {
+    draw_traits(group_at(member), n as u32, 1.0, &context.params, &context.streams)
 }
 
-fn example_negotiator(luck: &DrawContext, member: usize, n: u64) -> Negotiator {
-    example_traits(luck, member, n).negotiator.expect("the family is enterprises")
+fn example_negotiator(context: &DrawContext, member: usize, n: u64) -> Negotiator {
+    example_traits(context, member, n).negotiator.expect("the family is enterprises")
 }
 
 fn normal_at_least(mean: f64, std: f64, least: f64) -> DrawDistribution {
@@ -61,7 +61,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 max: generation.steepness_left_max,
             }
         },
-        draw: |luck, member, n| example_traits(luck, member, n).curve.steepness_left,
+        draw: |context, member, n| example_traits(context, member, n).curve.steepness_left,
     },
     WorldDraw {
         name: "steepness_right",
@@ -84,7 +84,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 max: generation.steepness_right_max,
             }
         },
-        draw: |luck, member, n| example_traits(luck, member, n).curve.steepness_right,
+        draw: |context, member, n| example_traits(context, member, n).curve.steepness_right,
     },
     WorldDraw {
         name: "c_max",
@@ -106,7 +106,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 bounds.c_max_min,
             )
         },
-        draw: |luck, member, n| example_traits(luck, member, n).curve.c_max,
+        draw: |context, member, n| example_traits(context, member, n).curve.c_max,
     },
     WorldDraw {
         name: "q_min",
@@ -123,7 +123,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 params.customer_generation.q_min_min,
             )
         },
-        draw: |luck, member, n| example_traits(luck, member, n).curve.q_min,
+        draw: |context, member, n| example_traits(context, member, n).curve.q_min,
     },
     WorldDraw {
         name: "q_range",
@@ -140,8 +140,8 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 params.customer_generation.q_range_min,
             )
         },
-        draw: |luck, member, n| {
-            let curve = example_traits(luck, member, n).curve;
+        draw: |context, member, n| {
+            let curve = example_traits(context, member, n).curve;
             curve.q_max - curve.q_min
         },
     },
@@ -164,7 +164,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 params.customer_generation.usage_demand_min,
             )
         },
-        draw: |luck, member, n| example_traits(luck, member, n).usage_demand,
+        draw: |context, member, n| example_traits(context, member, n).usage_demand,
     },
     WorldDraw {
         name: "ads_quality_sensitivity",
@@ -185,7 +185,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 params.customer_generation.ads_quality_sensitivity_min,
             )
         },
-        draw: |luck, member, n| example_traits(luck, member, n).ads_quality_sensitivity,
+        draw: |context, member, n| example_traits(context, member, n).ads_quality_sensitivity,
     },
     WorldDraw {
         name: "ads_return_sensitivity",
@@ -206,7 +206,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 params.customer_generation.ads_return_sensitivity_min,
             )
         },
-        draw: |luck, member, n| example_traits(luck, member, n).ads_return_sensitivity,
+        draw: |context, member, n| example_traits(context, member, n).ads_return_sensitivity,
     },
     WorldDraw {
         name: "seats",
@@ -222,7 +222,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 high: group_params.seat_count_max.unwrap_or(1),
             }
         },
-        draw: |luck, member, n| example_traits(luck, member, n).seats,
+        draw: |context, member, n| example_traits(context, member, n).seats,
     },
     WorldDraw {
         name: "reply_delay_mean",
@@ -242,7 +242,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 bounds.reply_delay_mean_noise_std_factor * group_params.reply_delay_std.unwrap_or(0.0);
             normal_at_least(group_params.reply_delay_mean.unwrap_or(0.0), spread, bounds.reply_delay_mean_min)
         },
-        draw: |luck, member, n| example_negotiator(luck, member, n).reply_delay_mean,
+        draw: |context, member, n| example_negotiator(context, member, n).reply_delay_mean,
     },
     WorldDraw {
         name: "reply_delay_std",
@@ -264,7 +264,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 bounds.reply_delay_std_min,
             )
         },
-        draw: |luck, member, n| example_negotiator(luck, member, n).reply_delay_std,
+        draw: |context, member, n| example_negotiator(context, member, n).reply_delay_std,
     },
     WorldDraw {
         name: "initial_offer_factor",
@@ -284,7 +284,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
             min: params.customer_generation.initial_offer_factor_min,
             max: params.customer_generation.initial_offer_factor_max,
         },
-        draw: |luck, member, n| example_negotiator(luck, member, n).initial_offer_factor,
+        draw: |context, member, n| example_negotiator(context, member, n).initial_offer_factor,
     },
     WorldDraw {
         name: "max_negotiation_turns",
@@ -306,7 +306,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 min: f64::from(params.customer_generation.max_negotiation_turns_min),
             }
         },
-        draw: |luck, member, n| f64::from(example_negotiator(luck, member, n).max_negotiation_turns),
+        draw: |context, member, n| f64::from(example_negotiator(context, member, n).max_negotiation_turns),
     },
     WorldDraw {
         name: "persona_pick",
@@ -322,7 +322,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                 high: group_personas.industry.len().saturating_sub(1) as u32,
             }
         },
-        draw: |luck, member, n| f64::from(example_traits(luck, member, n).persona.0[0]),
+        draw: |context, member, n| f64::from(example_traits(context, member, n).persona.0[0]),
     },
     WorldDraw {
         name: "lead_count",
@@ -332,8 +332,8 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         parameters: &[],
         source_files: &[("market/arrivals.rs", 1)],
         distribution: |_, _| DrawDistribution::Poisson(EXPECTED_LEADS),
-        draw: |luck, member, n| {
-            luck.streams.open(Part::LeadCount, [n, member as u64]).poisson(EXPECTED_LEADS) as f64
+        draw: |context, member, n| {
+            context.streams.open(Part::LeadCount, [n, member as u64]).poisson(EXPECTED_LEADS) as f64
         },
     },
     WorldDraw {
@@ -352,9 +352,9 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
                     .collect(),
             )
         },
-        draw: |luck, member, n| {
-            let u = luck.streams.open(Part::LeadSource, [member as u64, n]).uniform();
-            let source = lead_factors_for_equal_budgets(&luck.params, member).pick_source(u);
+        draw: |context, member, n| {
+            let u = context.streams.open(Part::LeadSource, [member as u64, n]).uniform();
+            let source = lead_factors_for_equal_budgets(&context.params, member).pick_source(u);
             source.channel().map_or(f64::NAN, |channel| channel.index() as f64)
         },
     },
@@ -369,11 +369,12 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
             low: params.quality.initial_decision_noise_min,
             high: params.quality.initial_decision_noise_max,
         },
-        draw: |luck, member, n| {
+        draw: |context, member, n| {
             let offers = ByPlan([PlanOffer { price: 10.0, quality: 0.3, quota: 1e6 }; 3]);
-            let traits = example_traits(luck, member, 1);
-            let word = luck.streams.open(Part::LeadNoise, [member as u64, n]).word();
-            LeadEvaluation::new(&offers, 0.0, (traits.curve, traits.usage_demand), word, &luck.params).noise
+            let traits = example_traits(context, member, 1);
+            let word = context.streams.open(Part::LeadNoise, [member as u64, n]).word();
+            LeadEvaluation::new(&offers, 0.0, (traits.curve, traits.usage_demand), word, &context.params)
+                .noise
         },
     },
 ];

@@ -82,7 +82,7 @@ pub enum RoundingMode {
     Down,
 }
 
-/// Mean and standard deviation of a distribution or sample.
+/// The mean and standard deviation of a distribution or sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
     /// Mean of the values.

@@ -25,9 +25,9 @@ fn competitor_event_chance(params: &Params) -> f64 {
 }
 
 /// Returns the size before growth and the copied share of a competitor event, whose probability is set to 1.
-fn example_competitor_event(luck: &DrawContext, n: u64) -> (f64, f64) {
-    let mut stream = luck.streams.open(Part::CompetitorEvent, [n]);
-    let drawn = draw_event(1.0, &luck.params.competitor, &mut stream);
+fn example_competitor_event(context: &DrawContext, n: u64) -> (f64, f64) {
+    let mut stream = context.streams.open(Part::CompetitorEvent, [n]);
+    let drawn = draw_event(1.0, &context.params.competitor, &mut stream);
     drawn.map_or((f64::NAN, f64::NAN), |event| (event.size, event.u))
 }
 
@@ -36,11 +36,11 @@ fn unknown_groups() -> Vec<Group> {
 }
 
 /// Returns a figure of a demand surge, whose probability is set to 1.
-fn example_surge(luck: &DrawContext, n: u64, figure: fn(u32, f64) -> f64) -> f64 {
+fn example_surge(context: &DrawContext, n: u64, figure: fn(u32, f64) -> f64) -> f64 {
     let demand_surge =
-        novamind_world::params::DemandSurge { probability: 1.0, ..luck.params.demand_surge.clone() };
+        novamind_world::params::DemandSurge { probability: 1.0, ..context.params.demand_surge.clone() };
     let day = n as u32;
-    draw_surge(day, &demand_surge, &luck.streams)
+    draw_surge(day, &demand_surge, &context.streams)
         .map_or(f64::NAN, |surge| figure(surge.end_day - day, surge.multiplier))
 }
 
@@ -62,10 +62,10 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(COMPETITORS_FILE, 1)],
         distribution: |params, _| DrawDistribution::Bernoulli(competitor_event_chance(params)),
-        draw: |luck, _, n| {
-            let mut stream = luck.streams.open(Part::CompetitorEvent, [n]);
+        draw: |context, _, n| {
+            let mut stream = context.streams.open(Part::CompetitorEvent, [n]);
             let drawn =
-                draw_event(competitor_event_chance(&luck.params), &luck.params.competitor, &mut stream);
+                draw_event(competitor_event_chance(&context.params), &context.params.competitor, &mut stream);
             f64::from(u8::from(drawn.is_some()))
         },
     },
@@ -93,12 +93,12 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
                 factor: magnitude_scale(EXAMPLE_DAY, EXAMPLE_RUN_DAYS, competitor),
             }
         },
-        draw: |luck, _, n| {
+        draw: |context, _, n| {
             sampled_boost(
-                example_competitor_event(luck, n).0,
+                example_competitor_event(context, n).0,
                 EXAMPLE_DAY,
                 EXAMPLE_RUN_DAYS,
-                &luck.params.competitor,
+                &context.params.competitor,
             )
         },
     },
@@ -113,7 +113,7 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
             low: params.competitor.competitor_feedback_u_min,
             high: params.competitor.competitor_feedback_u_max,
         },
-        draw: |luck, _, n| example_competitor_event(luck, n).1,
+        draw: |context, _, n| example_competitor_event(context, n).1,
     },
     WorldDraw {
         name: "rival_drain",
@@ -129,9 +129,10 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
             low: params.competitor.competitor_segment_drain_u_min,
             high: params.competitor.competitor_segment_drain_u_max,
         },
-        draw: |luck, _, n| {
-            let law = &luck.params.competitor;
-            luck.streams
+        draw: |context, _, n| {
+            let law = &context.params.competitor;
+            context
+                .streams
                 .open(Part::CompetitorEvent, [n])
                 .between(law.competitor_segment_drain_u_min, law.competitor_segment_drain_u_max)
         },
@@ -144,8 +145,8 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
         parameters: &["demand_surge.probability"],
         source_files: &[(SURGES_FILE, 1)],
         distribution: |params, _| DrawDistribution::Bernoulli(params.demand_surge.probability),
-        draw: |luck, _, n| {
-            let drawn = draw_surge(n as u32, &luck.params.demand_surge, &luck.streams);
+        draw: |context, _, n| {
+            let drawn = draw_surge(n as u32, &context.params.demand_surge, &context.streams);
             f64::from(u8::from(drawn.is_some()))
         },
     },
@@ -160,7 +161,7 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
             low: params.demand_surge.duration_days_low,
             high: params.demand_surge.duration_days_high_exclusive - 1,
         },
-        draw: |luck, _, n| example_surge(luck, n, |days, _| f64::from(days)),
+        draw: |context, _, n| example_surge(context, n, |days, _| f64::from(days)),
     },
     WorldDraw {
         name: "surge_multiplier",
@@ -176,7 +177,7 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
                 high: demand_surge.multiplier_base + demand_surge.multiplier_range,
             }
         },
-        draw: |luck, _, n| example_surge(luck, n, |_, multiplier| multiplier),
+        draw: |context, _, n| example_surge(context, n, |_, multiplier| multiplier),
     },
     WorldDraw {
         name: "group_found",
@@ -188,9 +189,9 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
         distribution: |params, _| {
             DrawDistribution::Bernoulli(params.market_research.market_research_discover_prob)
         },
-        draw: |luck, _, n| {
-            let mut stream = luck.streams.open(Part::MarketResearch, [n]);
-            let chance = luck.params.market_research.market_research_discover_prob;
+        draw: |context, _, n| {
+            let mut stream = context.streams.open(Part::MarketResearch, [n]);
+            let chance = context.params.market_research.market_research_discover_prob;
             f64::from(u8::from(draw_attempt(&unknown_groups(), chance, &mut stream).is_some()))
         },
     },
@@ -205,8 +206,8 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
             low: 0,
             high: unknown_groups().len().saturating_sub(1) as u32,
         },
-        draw: |luck, _, n| {
-            let (all, mut stream) = (unknown_groups(), luck.streams.open(Part::MarketResearch, [n]));
+        draw: |context, _, n| {
+            let (all, mut stream) = (unknown_groups(), context.streams.open(Part::MarketResearch, [n]));
             let found = draw_attempt(&all, 1.0, &mut stream);
             found
                 .and_then(|found| all.iter().position(|group| *group == found))
@@ -221,7 +222,7 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
         parameters: &["macro.macro_pmi_random_phase"],
         source_files: &[("market/economy.rs", 1)],
         distribution: |_, _| DrawDistribution::Uniform { low: 0.0, high: 2.0 * std::f64::consts::PI },
-        draw: |luck, _, n| luck.streams.open(Part::Macro, [n]).between(0.0, 2.0 * std::f64::consts::PI),
+        draw: |context, _, n| context.streams.open(Part::Macro, [n]).between(0.0, 2.0 * std::f64::consts::PI),
     },
     WorldDraw {
         name: "index_step",
@@ -241,9 +242,9 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
             min: params.economy.macro_pmi_floor,
             max: params.economy.macro_pmi_ceiling,
         },
-        draw: |luck, _, n| {
-            let law = &luck.params.economy;
-            let z = luck.streams.open(Part::Macro, [n]).standard_normal();
+        draw: |context, _, n| {
+            let law = &context.params.economy;
+            let z = context.streams.open(Part::Macro, [n]).standard_normal();
             next_pmi(law.macro_pmi_initial, law.macro_pmi_initial, z, law)
         },
     },
@@ -267,9 +268,9 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
                 max: f64::INFINITY,
             }
         },
-        draw: |luck, member, n| {
-            let z = luck.streams.open(Part::LeadRateDrift, [member as u64, n]).standard_normal();
-            yield_after_month(best_yield(&luck.params, member), z, &luck.params.leads)
+        draw: |context, member, n| {
+            let z = context.streams.open(Part::LeadRateDrift, [member as u64, n]).standard_normal();
+            yield_after_month(best_yield(&context.params, member), z, &context.params.leads)
         },
     },
     WorldDraw {
@@ -280,6 +281,8 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
         parameters: &["info_level.noise"],
         source_files: &[("market/insights.rs", 1)],
         distribution: |_, _| DrawDistribution::Uniform { low: -1.0, high: 1.0 },
-        draw: |luck, member, n| luck.streams.open(Part::Insight, [member as u64, 1, n]).between(-1.0, 1.0),
+        draw: |context, member, n| {
+            context.streams.open(Part::Insight, [member as u64, 1, n]).between(-1.0, 1.0)
+        },
     },
 ];

@@ -26,9 +26,9 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
         parameters: &["operations.base_outage_prob", "operations.ops_outage_min_prob"],
         source_files: &[(SERVICE_FILE, 1)],
         distribution: |params, _| DrawDistribution::Bernoulli(example_outage_probability(params)),
-        draw: |luck, _, n| {
-            let mut stream = luck.streams.open(Part::Service, [n]);
-            f64::from(u8::from(stream.bernoulli(example_outage_probability(&luck.params))))
+        draw: |context, _, n| {
+            let mut stream = context.streams.open(Part::Service, [n]);
+            f64::from(u8::from(stream.bernoulli(example_outage_probability(&context.params))))
         },
     },
     WorldDraw {
@@ -43,10 +43,10 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
             let lengths = operations.downtime_minutes_choices.into_iter().map(f64::from);
             DrawDistribution::Discrete(lengths.zip(operations.downtime_minutes_probabilities).collect())
         },
-        draw: |luck, _, n| {
+        draw: |context, _, n| {
             f64::from(draw_downtime_minutes(
-                &mut luck.streams.open(Part::Service, [n]),
-                &luck.params.operations,
+                &mut context.streams.open(Part::Service, [n]),
+                &context.params.operations,
             ))
         },
     },
@@ -63,9 +63,9 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
             min: f64::NEG_INFINITY,
             max: f64::INFINITY,
         },
-        draw: |luck, _, n| {
-            let z = luck.streams.open(Part::Service, [n]).standard_normal();
-            p95_latency(0.0, z, &luck.params.operations)
+        draw: |context, _, n| {
+            let z = context.streams.open(Part::Service, [n]).standard_normal();
+            p95_latency(0.0, z, &context.params.operations)
         },
     },
     WorldDraw {
@@ -86,9 +86,9 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
             min: params.operations.error_rate_min,
             max: params.operations.error_rate_max,
         },
-        draw: |luck, _, n| {
-            let z = luck.streams.open(Part::Service, [n]).standard_normal();
-            error_rate(0.0, z, &luck.params.operations)
+        draw: |context, _, n| {
+            let z = context.streams.open(Part::Service, [n]).standard_normal();
+            error_rate(0.0, z, &context.params.operations)
         },
     },
     WorldDraw {
@@ -104,7 +104,7 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
             min: f64::NEG_INFINITY,
             max: f64::INFINITY,
         },
-        draw: |luck, _, n| daily_noise(n as u32, &luck.params, &luck.streams),
+        draw: |context, _, n| daily_noise(n as u32, &context.params, &context.streams),
     },
     WorldDraw {
         name: "research_days",
@@ -126,10 +126,10 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
                 min: f64::from(params.development.rd_min_duration_days),
             }
         },
-        draw: |luck, tier, n| {
-            let z = luck.streams.open(Part::Research, [tier as u64, n]).standard_normal();
-            let tier_params = luck.params.research_tier(tier as u8);
-            f64::from(project_duration(tier_params, z, &luck.params.development))
+        draw: |context, tier, n| {
+            let z = context.streams.open(Part::Research, [tier as u64, n]).standard_normal();
+            let tier_params = context.params.research_tier(tier as u8);
+            f64::from(project_duration(tier_params, z, &context.params.development))
         },
     },
     WorldDraw {
@@ -152,11 +152,11 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
                 max: f64::INFINITY,
             }
         },
-        draw: |luck, tier, n| {
-            let mut stream = luck.streams.open(Part::Research, [tier as u64, n]);
+        draw: |context, tier, n| {
+            let mut stream = context.streams.open(Part::Research, [tier as u64, n]);
             // The first draw of the stream is the duration.
             let (_, z) = (stream.standard_normal(), stream.standard_normal());
-            project_boost(luck.params.research_tier(tier as u8), z, &luck.params.development)
+            project_boost(context.params.research_tier(tier as u8), z, &context.params.development)
         },
     },
     WorldDraw {
@@ -179,10 +179,10 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
                 max: f64::INFINITY,
             }
         },
-        draw: |luck, member, n| {
-            let z = luck.streams.open(Part::UsageRate, [member as u64, n, 1]).standard_normal();
-            let demand = luck.params.group(group_at(member)).usage_demand_mean;
-            usage_rate(demand, 1.0, z, &luck.params.customer_generation)
+        draw: |context, member, n| {
+            let z = context.streams.open(Part::UsageRate, [member as u64, n, 1]).standard_normal();
+            let demand = context.params.group(group_at(member)).usage_demand_mean;
+            usage_rate(demand, 1.0, z, &context.params.customer_generation)
         },
     },
 ];

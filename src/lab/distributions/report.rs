@@ -16,7 +16,7 @@ const HISTOGRAM_BINS: usize = 40;
 const SMALL_HISTOGRAM_WIDTH: usize = 12;
 
 /// Returns a report on all random draws, each drawn `draws` times for the first member of its family.
-pub fn all_distributions_report(luck: &DrawContext, draws: u64) -> LabReport {
+pub fn all_distributions_report(context: &DrawContext, draws: u64) -> LabReport {
     let columns = vec![
         Column::text("name", "name"),
         Column::text("law", "law"),
@@ -30,11 +30,11 @@ pub fn all_distributions_report(luck: &DrawContext, draws: u64) -> LabReport {
     let columns = ["name", "parameters", "source"].map(|name| Column::text(name, name));
     let mut sources = LabTable::new("parameters", "Parameters and their sources", columns.into());
     for world_draw in world_draws() {
-        let Some((member, name)) = world_draw.family.members(&luck.params).into_iter().next() else {
+        let Some((member, name)) = world_draw.family.members(&context.params).into_iter().next() else {
             continue;
         };
         let (draw_distribution, drawn) =
-            ((world_draw.distribution)(&luck.params, member), world_draw.draws(luck, member, draws));
+            ((world_draw.distribution)(&context.params, member), world_draw.draws(context, member, draws));
         let (sample, exact) = (SampleStatistics::from_values(&drawn), draw_distribution.moments());
         let shown =
             if name.is_empty() { world_draw.name.to_owned() } else { format!("{} {name}", world_draw.name) };
@@ -89,11 +89,11 @@ fn small_histogram(histogram: &Histogram) -> String {
 pub fn distribution_report(
     world_draw: &WorldDraw,
     (member, name): (usize, &str),
-    luck: &DrawContext,
+    context: &DrawContext,
     draws: u64,
 ) -> LabReport {
-    let distribution = (world_draw.distribution)(&luck.params, member);
-    let drawn = world_draw.draws(luck, member, draws);
+    let distribution = (world_draw.distribution)(&context.params, member);
+    let drawn = world_draw.draws(context, member, draws);
     let columns = vec![
         Column::text("who", "source"),
         Column::number("draws", "draws", Measure::Count),
@@ -124,7 +124,7 @@ pub fn distribution_report(
     exhibit.notes.push(format!("Parameters: {}.", describe_source(world_draw)));
     let members: Vec<String> = world_draw
         .family
-        .members(&luck.params)
+        .members(&context.params)
         .into_iter()
         .map(|(_, name)| name)
         .filter(|name| !name.is_empty())

@@ -33,9 +33,11 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
         parameters: &["issues.issue_resolution_base_rate"],
         source_files: &[(SUPPORT_FILE, 1)],
         distribution: |_, _| DrawDistribution::Poisson(EXAMPLE_SOLVED_ISSUES),
-        draw: |luck, member, n| {
-            luck.streams.open(Part::IssueResolution, [n, 0, 0, member as u64]).poisson(EXAMPLE_SOLVED_ISSUES)
-                as f64
+        draw: |context, member, n| {
+            context
+                .streams
+                .open(Part::IssueResolution, [n, 0, 0, member as u64])
+                .poisson(EXAMPLE_SOLVED_ISSUES) as f64
         },
     },
     WorldDraw {
@@ -49,8 +51,8 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
             low: 0,
             high: EXAMPLE_OPEN_ISSUES as u32 - 1,
         },
-        draw: |luck, member, n| {
-            luck.streams.open(Part::IssueResolution, [n, 1, 0, member as u64]).index(EXAMPLE_OPEN_ISSUES)
+        draw: |context, member, n| {
+            context.streams.open(Part::IssueResolution, [n, 1, 0, member as u64]).index(EXAMPLE_OPEN_ISSUES)
                 as f64
         },
     },
@@ -68,10 +70,10 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[("retention/issues.rs", 2)],
         distribution: |params, _| DrawDistribution::Bernoulli(example_issue_probability(params)),
-        draw: |luck, member, n| {
+        draw: |context, member, n| {
             let mut word = [0];
-            luck.streams.open(Part::IssueOpening, [n, member as u64, 0]).fill(&mut word);
-            f64::from(u8::from(bernoulli_from_word(word[0], example_issue_probability(&luck.params))))
+            context.streams.open(Part::IssueOpening, [n, member as u64, 0]).fill(&mut word);
+            f64::from(u8::from(bernoulli_from_word(word[0], example_issue_probability(&context.params))))
         },
     },
     WorldDraw {
@@ -95,11 +97,11 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
                 max: law.mu_max,
             }
         },
-        draw: |luck, member, n| {
-            let z = luck.streams.open(Part::InvoluntaryMu, [member as u64, n]).standard_normal();
-            let group_params = luck.params.group(group_at(member));
+        draw: |context, member, n| {
+            let z = context.streams.open(Part::InvoluntaryMu, [member as u64, n]).standard_normal();
+            let group_params = context.params.group(group_at(member));
             let (mean, std) = (group_params.involuntary_churn_mean, group_params.involuntary_churn_std);
-            involuntary_rate(mean, std, z, &luck.params.involuntary_churn)
+            involuntary_rate(mean, std, z, &context.params.involuntary_churn)
         },
     },
     WorldDraw {
@@ -112,13 +114,13 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
         distribution: |params, member| {
             DrawDistribution::Bernoulli(params.group(group_at(member)).involuntary_churn_mean)
         },
-        draw: |luck, member, n| {
+        draw: |context, member, n| {
             // Draws for the customer at the same position of the block, on consecutive days.
             let group = group_at(member);
             let (number, day) = ((n % 97) as u32, (n / 97) as u32);
-            let word = payment_failure_words(group, number, day, &luck.streams)
+            let word = payment_failure_words(group, number, day, &context.streams)
                 [n as usize % CUSTOMERS_PER_BLOCK as usize];
-            f64::from(u8::from(bernoulli_from_word(word, luck.params.group(group).involuntary_churn_mean)))
+            f64::from(u8::from(bernoulli_from_word(word, context.params.group(group).involuntary_churn_mean)))
         },
     },
     WorldDraw {
@@ -132,9 +134,9 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
             low: cancel_damage(0.0, 2, 0.0, &params.reputation),
             high: cancel_damage(0.0, 2, 1.0, &params.reputation),
         },
-        draw: |luck, member, n| {
-            let u = luck.streams.open(Part::ReputationEvent, [n, member as u64, 1, 0]).uniform();
-            cancel_damage(0.0, 2, u, &luck.params.reputation)
+        draw: |context, member, n| {
+            let u = context.streams.open(Part::ReputationEvent, [n, member as u64, 1, 0]).uniform();
+            cancel_damage(0.0, 2, u, &context.params.reputation)
         },
     },
     WorldDraw {
@@ -148,9 +150,10 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
             low: params.quality.initial_decision_noise_min,
             high: params.quality.initial_decision_noise_max,
         },
-        draw: |luck, member, n| {
-            let quality = &luck.params.quality;
-            luck.streams
+        draw: |context, member, n| {
+            let quality = &context.params.quality;
+            context
+                .streams
                 .open_for_day(0, Part::NegotiationNoise, [member as u64, n])
                 .between(quality.initial_decision_noise_min, quality.initial_decision_noise_max)
         },
@@ -171,12 +174,12 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
                 min: f64::from(params.enterprise.reply_delay_min_days),
             }
         },
-        draw: |luck, member, n| {
-            let z = luck.streams.open(Part::ReplyDelay, [n, 1]).standard_normal();
-            let group_params = luck.params.group(group_at(member));
+        draw: |context, member, n| {
+            let z = context.streams.open(Part::ReplyDelay, [n, 1]).standard_normal();
+            let group_params = context.params.group(group_at(member));
             let (mean, std) =
                 (group_params.reply_delay_mean.unwrap_or(0.0), group_params.reply_delay_std.unwrap_or(0.0));
-            f64::from(reply_delay(mean, std, z, &luck.params.enterprise))
+            f64::from(reply_delay(mean, std, z, &context.params.enterprise))
         },
     },
     WorldDraw {
@@ -187,9 +190,9 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
         parameters: &["enterprise.plan_change_probability"],
         source_files: &[("enterprise/triggers.rs", 1)],
         distribution: |params, _| DrawDistribution::Bernoulli(params.enterprise.plan_change_probability),
-        draw: |luck, member, n| {
-            let mut stream = luck.streams.open(Part::PlanChange, [n, member as u64, 1]);
-            f64::from(u8::from(stream.bernoulli(luck.params.enterprise.plan_change_probability)))
+        draw: |context, member, n| {
+            let mut stream = context.streams.open(Part::PlanChange, [n, member as u64, 1]);
+            f64::from(u8::from(stream.bernoulli(context.params.enterprise.plan_change_probability)))
         },
     },
 ];

@@ -19,12 +19,12 @@ const EXAMPLE_AUTHOR_SATISFACTION: f64 = 0.1;
 /// Number of subscribers in the example.
 const EXAMPLE_SUBSCRIBERS: usize = 100;
 
-fn post_stream(luck: &DrawContext, n: u64) -> novamind_world::random::Stream {
-    luck.streams.open(Part::CustomerPosts, [n])
+fn post_stream(context: &DrawContext, n: u64) -> novamind_world::random::Stream {
+    context.streams.open(Part::CustomerPosts, [n])
 }
 
-fn draw_integer(luck: &DrawContext, part: Part, n: u64, (low, high): (u32, u32)) -> f64 {
-    f64::from(luck.streams.open(part, [n]).integer(low, high))
+fn draw_integer(context: &DrawContext, part: Part, n: u64, (low, high): (u32, u32)) -> f64 {
+    f64::from(context.streams.open(part, [n]).integer(low, high))
 }
 
 /// Random draws of the social feed.
@@ -42,7 +42,7 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             min: 0.0,
             max: f64::INFINITY,
         },
-        draw: |luck, _, n| post_stream(luck, n).exponential(1.0),
+        draw: |context, _, n| post_stream(context, n).exponential(1.0),
     },
     WorldDraw {
         name: "post_author",
@@ -52,7 +52,7 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
         parameters: &[],
         source_files: &[(CROWD_FILE, 2)],
         distribution: |_, _| DrawDistribution::Uniform { low: 0.0, high: 1.0 },
-        draw: |luck, _, n| post_stream(luck, n).uniform(),
+        draw: |context, _, n| post_stream(context, n).uniform(),
     },
     WorldDraw {
         name: "post_tone",
@@ -70,10 +70,10 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
                 (-1.0, negative),
             ])
         },
-        draw: |luck, _, n| match sentiment(
+        draw: |context, _, n| match sentiment(
             EXAMPLE_AUTHOR_SATISFACTION,
-            post_stream(luck, n).uniform(),
-            &luck.params.social,
+            post_stream(context, n).uniform(),
+            &context.params.social,
         ) {
             Sentiment::Positive => 1.0,
             Sentiment::Neutral => 0.0,
@@ -92,9 +92,9 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             let [(low, high), _] = engagement_ranges(id, params);
             DrawDistribution::UniformInteger { low, high }
         },
-        draw: |luck, member, n| {
-            let [likes, _] = engagement_ranges(Group::at(member).map_or("", Group::id), &luck.params);
-            draw_integer(luck, Part::CustomerPosts, n, likes)
+        draw: |context, member, n| {
+            let [likes, _] = engagement_ranges(Group::at(member).map_or("", Group::id), &context.params);
+            draw_integer(context, Part::CustomerPosts, n, likes)
         },
     },
     WorldDraw {
@@ -109,9 +109,9 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             let [_, (low, high)] = engagement_ranges(id, params);
             DrawDistribution::UniformInteger { low, high }
         },
-        draw: |luck, member, n| {
-            let [_, shares] = engagement_ranges(Group::at(member).map_or("", Group::id), &luck.params);
-            draw_integer(luck, Part::CustomerPosts, n, shares)
+        draw: |context, member, n| {
+            let [_, shares] = engagement_ranges(Group::at(member).map_or("", Group::id), &context.params);
+            draw_integer(context, Part::CustomerPosts, n, shares)
         },
     },
     WorldDraw {
@@ -122,7 +122,7 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
         parameters: &["social.virality_positive_range", "social.virality_neutral_range"],
         source_files: &[(ENGAGEMENT_FILE, 4)],
         distribution: |_, _| DrawDistribution::Uniform { low: 0.0, high: 1.0 },
-        draw: |luck, _, n| post_stream(luck, n).uniform(),
+        draw: |context, _, n| post_stream(context, n).uniform(),
     },
     WorldDraw {
         name: "post_explodes",
@@ -132,9 +132,9 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
         parameters: &["social.viral_spike_probability"],
         source_files: &[(ENGAGEMENT_FILE, 1)],
         distribution: |params, _| DrawDistribution::Bernoulli(params.social.viral_spike_probability),
-        draw: |luck, _, n| {
-            let spike = post_stream(luck, n).uniform();
-            f64::from(u8::from(spike < luck.params.social.viral_spike_probability))
+        draw: |context, _, n| {
+            let spike = post_stream(context, n).uniform();
+            f64::from(u8::from(spike < context.params.social.viral_spike_probability))
         },
     },
     WorldDraw {
@@ -151,9 +151,9 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             low: 1.0 + params.competitor.competitor_post_boost_noise_min,
             high: 1.0 + params.competitor.competitor_post_boost_noise_max,
         },
-        draw: |luck, _, n| {
-            let law = &luck.params.competitor;
-            let u = luck
+        draw: |context, _, n| {
+            let law = &context.params.competitor;
+            let u = context
                 .streams
                 .open(Part::CompetitorPosts, [n])
                 .between(law.competitor_post_boost_noise_min, law.competitor_post_boost_noise_max);
@@ -171,9 +171,9 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             low: 0,
             high: params.competitor.competitor_names.len() as u32 - 1,
         },
-        draw: |luck, _, n| {
-            let names = luck.params.competitor.competitor_names.len();
-            luck.streams.open(Part::CompetitorPosts, [n]).index(names) as f64
+        draw: |context, _, n| {
+            let names = context.params.competitor.competitor_names.len();
+            context.streams.open(Part::CompetitorPosts, [n]).index(names) as f64
         },
     },
     WorldDraw {
@@ -187,9 +187,9 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             low: 0,
             high: params.competitor.post_perspective_count - 1,
         },
-        draw: |luck, _, n| {
-            let count = luck.params.competitor.post_perspective_count as usize;
-            luck.streams.open(Part::CompetitorPosts, [n]).index(count) as f64
+        draw: |context, _, n| {
+            let count = context.params.competitor.post_perspective_count as usize;
+            context.streams.open(Part::CompetitorPosts, [n]).index(count) as f64
         },
     },
     WorldDraw {
@@ -200,7 +200,7 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
         parameters: &[],
         source_files: &[(PRESS_FILE, 6)],
         distribution: |_, _| DrawDistribution::Uniform { low: 0.0, high: 1.0 },
-        draw: |luck, _, n| luck.streams.open(Part::CompetitorPosts, [n]).uniform(),
+        draw: |context, _, n| context.streams.open(Part::CompetitorPosts, [n]).uniform(),
     },
     WorldDraw {
         name: "economy_pause",
@@ -213,10 +213,10 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             low: params.economy.macro_social_post_interval_min,
             high: params.economy.macro_social_post_interval_max,
         },
-        draw: |luck, _, n| {
-            let law = &luck.params.economy;
+        draw: |context, _, n| {
+            let law = &context.params.economy;
             let ends = (law.macro_social_post_interval_min, law.macro_social_post_interval_max);
-            draw_integer(luck, Part::MacroPosts, n, ends)
+            draw_integer(context, Part::MacroPosts, n, ends)
         },
     },
     WorldDraw {
@@ -230,10 +230,10 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             low: params.economy.macro_social_post_count_min,
             high: params.economy.macro_social_post_count_max,
         },
-        draw: |luck, _, n| {
-            let law = &luck.params.economy;
+        draw: |context, _, n| {
+            let law = &context.params.economy;
             let ends = (law.macro_social_post_count_min, law.macro_social_post_count_max);
-            draw_integer(luck, Part::MacroPosts, n, ends)
+            draw_integer(context, Part::MacroPosts, n, ends)
         },
     },
     WorldDraw {
@@ -247,9 +247,9 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             low: 0,
             high: params.economy.post_perspective_count - 1,
         },
-        draw: |luck, _, n| {
-            let count = luck.params.economy.post_perspective_count as usize;
-            luck.streams.open(Part::MacroPosts, [n]).index(count) as f64
+        draw: |context, _, n| {
+            let count = context.params.economy.post_perspective_count as usize;
+            context.streams.open(Part::MacroPosts, [n]).index(count) as f64
         },
     },
     WorldDraw {
@@ -266,9 +266,10 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             max: f64::INFINITY,
             factor: 1.0,
         },
-        draw: |luck, member, n| {
-            let law = &luck.params.ceo_posts;
-            luck.streams
+        draw: |context, member, n| {
+            let law = &context.params.ceo_posts;
+            context
+                .streams
                 .open(Part::CeoViews, [n, member as u64])
                 .log_normal(law.views_noise_lognormal_mu, law.views_noise_lognormal_sigma)
         },
@@ -284,9 +285,14 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             low: params.ceo_posts.reply_likes_low,
             high: params.ceo_posts.reply_likes_high_exclusive - 1,
         },
-        draw: |luck, _, n| {
-            let law = &luck.params.ceo_posts;
-            draw_integer(luck, Part::CeoReply, n, (law.reply_likes_low, law.reply_likes_high_exclusive - 1))
+        draw: |context, _, n| {
+            let law = &context.params.ceo_posts;
+            draw_integer(
+                context,
+                Part::CeoReply,
+                n,
+                (law.reply_likes_low, law.reply_likes_high_exclusive - 1),
+            )
         },
     },
     WorldDraw {
@@ -300,9 +306,14 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             low: params.ceo_posts.reply_shares_low,
             high: params.ceo_posts.reply_shares_high_exclusive - 1,
         },
-        draw: |luck, _, n| {
-            let law = &luck.params.ceo_posts;
-            draw_integer(luck, Part::CeoReply, n, (law.reply_shares_low, law.reply_shares_high_exclusive - 1))
+        draw: |context, _, n| {
+            let law = &context.params.ceo_posts;
+            draw_integer(
+                context,
+                Part::CeoReply,
+                n,
+                (law.reply_shares_low, law.reply_shares_high_exclusive - 1),
+            )
         },
     },
     WorldDraw {
@@ -316,8 +327,8 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
             low: 0,
             high: EXAMPLE_SUBSCRIBERS as u32 - 1,
         },
-        draw: |luck, member, n| {
-            luck.streams.open(Part::CeoReply, [n, member as u64]).index(EXAMPLE_SUBSCRIBERS) as f64
+        draw: |context, member, n| {
+            context.streams.open(Part::CeoReply, [n, member as u64]).index(EXAMPLE_SUBSCRIBERS) as f64
         },
     },
 ];

@@ -7,7 +7,7 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::random::{Part, Streams};
 
-/// The parameters and random streams with which draws are made.
+/// The parameters and random streams that draws use.
 #[derive(Debug)]
 pub struct DrawContext {
     /// Parameters that determine the distributions.
@@ -65,7 +65,7 @@ impl DrawFamily {
 /// A random draw of the simulator.
 #[derive(Debug)]
 pub struct WorldDraw {
-    /// Name of the draw.
+    /// Unique name of the draw, for example `post_clock`.
     pub name: &'static str,
     /// Description of the draw, with its unit.
     pub description: &'static str,
@@ -75,11 +75,11 @@ pub struct WorldDraw {
     pub family: DrawFamily,
     /// Parameters on which the distribution depends.
     pub parameters: &'static [&'static str],
-    /// Files below `src/world` that contain the draw, with the number of occurrences.
+    /// Files below `src/world` that contain the draw, each with the number of its occurrences.
     pub source_files: &'static [(&'static str, usize)],
     /// Function that returns the distribution for a member of the family.
     pub distribution: fn(&Params, usize) -> DrawDistribution,
-    /// Function that makes the n-th draw for a member with the simulator's code.
+    /// Function that makes the n-th draw for a member of the family by calling the simulator's code.
     pub draw: fn(&DrawContext, usize, u64) -> f64,
 }
 
@@ -94,8 +94,8 @@ impl WorldDraw {
     }
 
     /// Returns the first `count` draws for a member of the family.
-    pub fn draws(&self, luck: &DrawContext, member: usize, count: u64) -> Vec<f64> {
-        (1..=count).map(|n| (self.draw)(luck, member, n)).collect()
+    pub fn draws(&self, context: &DrawContext, member: usize, count: u64) -> Vec<f64> {
+        (1..=count).map(|n| (self.draw)(context, member, n)).collect()
     }
 }
 

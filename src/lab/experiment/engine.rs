@@ -16,7 +16,7 @@ use crate::runner::{self, RunError, RunSpec};
 use novamind_record::folder::configuration::Configuration;
 use novamind_session::DayReport;
 
-/// Resources with which an experiment is executed.
+/// The resources that an experiment uses.
 pub struct ExperimentContext<'a> {
     /// Configuration with the scenarios and parameters.
     pub configuration: &'a Configuration,
@@ -30,7 +30,7 @@ pub struct ExperimentContext<'a> {
     pub on_run: &'a (dyn Fn() + Sync),
 }
 
-/// Reason why an experiment has no results.
+/// The reason why an experiment has no results.
 #[derive(Debug)]
 pub enum ExperimentError {
     /// A run could not start, or a tool rejected a call.

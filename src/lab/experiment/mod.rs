@@ -2,7 +2,8 @@
 //! soon as its run ends.
 //!
 //! [`Experiment::prepare`] loads results of earlier commands. [`PreparedExperiment::run`] plays the remaining runs. If
-//! a stopped command is repeated, the experiment resumes. The output then equals the output of an uninterrupted command.
+//! a stopped command is repeated, the experiment resumes. The output then equals the output of an uninterrupted
+//! command.
 
 mod engine;
 mod key;
@@ -30,7 +31,7 @@ use novamind_world::params::{Horizon, Params};
 /// An arm: one condition of an experiment.
 #[derive(Debug, Clone)]
 pub struct Arm {
-    /// Name of the arm in tables.
+    /// Name that tables show for the arm.
     pub name: String,
     /// Policy that plays the arm.
     pub policy: Policy,

@@ -37,15 +37,15 @@ pub struct RunResult {
     pub state_hash: String,
     /// Figures at the end of each simulated week.
     pub weeks: Vec<WeekPoint>,
-    /// Figures at the end of each day, if requested.
+    /// Figures at the end of each day; empty if not requested.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub daily: Vec<DayPoint>,
-    /// All figures of the requested days.
+    /// All figures of the requested days; empty if no days are requested.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub figures: Vec<FigurePoint>,
 }
 
-/// Figures of a run at the end of a week.
+/// The figures of a run at the end of a week.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WeekPoint {
     /// Last day of the week.
@@ -60,7 +60,7 @@ pub struct WeekPoint {
     pub mrr: f64,
 }
 
-/// Figures of a run on a day.
+/// The figures of a run on a day.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DayPoint {
     /// Day of the figures.
@@ -96,7 +96,7 @@ pub struct DayPoint {
 pub struct FigurePoint {
     /// Day of the value.
     pub day: u32,
-    /// Name of the figure.
+    /// Name of the figure, as listed in docs/interfaces/golden.md#figures.
     pub figure: String,
     /// Breakdown of the figure, for example a group; empty for a total.
     pub group: String,
@@ -110,7 +110,7 @@ impl RunResult {
         self.ended == RunEnd::Bankruptcy
     }
 
-    /// Returns the value of a figure on a requested day.
+    /// Returns the value of a figure on a requested day, or `None` if the value is not stored.
     pub fn figure(&self, day: u32, figure: &str, group: &str) -> Option<f64> {
         let is_requested =
             |point: &&FigurePoint| point.day == day && point.figure == figure && point.group == group;
@@ -118,7 +118,7 @@ impl RunResult {
     }
 }
 
-/// Observes the days of a run and collects its result.
+/// An observer of the days of a run, which collects the result of the run.
 pub(super) struct RunRecorder {
     daily: Option<Vec<DayPoint>>,
     collector: MetricsCollector,

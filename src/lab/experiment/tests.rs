@@ -56,7 +56,7 @@ fn stored_results_are_reused() {
     assert_eq!((second.expect("results"), played), (first.clone(), 0));
     let (afresh, played) = run_experiment(&test_experiment(), &path, true, 99);
     assert_eq!((afresh.expect("results"), played), (first.clone(), 6));
-    // Renaming an arm does not change its keys. Changing the days, a parameter or the recorded figures changes the keys.
+    // A new name of an arm does not change its keys. Other days, parameters or recorded figures change the keys.
     let mut renamed = test_experiment();
     renamed.arms[0].name = "nothing".to_owned();
     assert_eq!(run_experiment(&renamed, &path, false, 99).1, 0);

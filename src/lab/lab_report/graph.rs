@@ -26,7 +26,7 @@ pub struct Graph {
 /// An axis of a graph.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GraphAxis {
-    /// Label of the axis.
+    /// Label of the axis. A vertical axis whose label starts with `dollars` shows amounts in dollars.
     pub label: &'static str,
     /// Scale of the axis.
     pub scale: AxisScale,
@@ -45,7 +45,7 @@ impl GraphAxis {
 /// A named series of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Name of the series.
+    /// Name that the legend shows for the series.
     pub name: String,
     /// Points of the series, from left to right.
     pub points: Vec<(f64, f64)>,

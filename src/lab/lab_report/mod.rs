@@ -1,7 +1,8 @@
 //! Reports of laboratory commands: tables of typed cells, graphs and notes.
 //!
-//! A report is written as terminal text ([`LabReport::to_text`]), comma-separated values ([`LabTable::to_csv_rows`]), JSON
-//! ([`LabReport::to_json`]) and SVG ([`LabReport::to_svg`]). CSV, JSON and SVG have full precision.
+//! A report is written as terminal text ([`LabReport::to_text`]), comma-separated values
+//! ([`LabTable::to_csv_rows`]), JSON ([`LabReport::to_json`]) and SVG ([`LabReport::to_svg`]). CSV, JSON and SVG have
+//! full precision.
 
 mod data;
 mod graph;
@@ -19,11 +20,11 @@ pub const DEFAULT_WIDTH: usize = 100;
 /// The report of a laboratory command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LabReport {
-    /// Title of the report.
+    /// Title of the report, which precedes the tables.
     pub title: String,
     /// Tables of the report; the first table contains the main result.
     pub tables: Vec<LabTable>,
-    /// Graphs of the report.
+    /// Graphs of the report, shown below the tables.
     pub graphs: Vec<Graph>,
     /// Notes below the tables: assumptions, definitions and sources.
     pub notes: Vec<String>,
@@ -32,15 +33,15 @@ pub struct LabReport {
 /// A table of a report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LabTable {
-    /// Name of the table in exports, for `--table NAME`.
+    /// Name that exports and `--table NAME` use.
     pub name: String,
     /// Caption of the table; can be empty.
     pub caption: String,
-    /// Columns of the table.
+    /// Columns of the table, from left to right.
     pub columns: Vec<Column>,
     /// Cells of each row, one per column.
     pub rows: Vec<Vec<CellValue>>,
-    /// Summary rows. In text, summary rows follow a rule. In JSON, summary rows are separate from the rows.
+    /// Summary rows. In text, a horizontal line precedes them. In JSON, they are separate from the other rows.
     pub summary: Vec<Vec<CellValue>>,
     /// Whether the table is too long for text, which then contains only the option that exports the table.
     pub is_machine_readable_only: bool,
@@ -49,7 +50,7 @@ pub struct LabTable {
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
-    /// Name of the column in exports; see [`column_name`].
+    /// Name that exports use; see [`column_name`].
     pub name: String,
     /// Heading of the column, which can wrap at spaces.
     pub heading: String,
@@ -132,14 +133,15 @@ impl Column {
     }
 }
 
-/// Returns a column name for exports: the letters and digits of `text` in lower case, with underscores between the words.
+/// Returns a column name for exports: the letters and digits of `text` in lower case, with underscores between the
+/// words.
 pub fn column_name(text: &str) -> String {
     let words = text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join("_").to_lowercase()
 }
 
 impl Measure {
-    /// Returns the name of the measure in exports.
+    /// Returns the name that exports use for the measure.
     pub fn name(self) -> &'static str {
         match self {
             Measure::Dollars => "dollars",

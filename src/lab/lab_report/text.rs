@@ -186,7 +186,7 @@ impl<'a> TextLayout<'a> {
         let heads: Vec<Vec<String>> =
             panel.iter().map(|at| wrap_text(&self.columns[*at].heading, self.widths[*at])).collect();
         let height = heads.iter().map(Vec::len).max().unwrap_or(0);
-        // Headings are bottom-aligned above the rule.
+        // Headings are bottom-aligned above the horizontal line.
         let heads: Vec<Vec<String>> = heads
             .into_iter()
             .map(|texts| [vec![String::new(); height - texts.len()], texts].concat())
@@ -206,7 +206,7 @@ impl<'a> TextLayout<'a> {
         text
     }
 
-    /// Formats a row of cells with several lines.
+    /// Formats a row whose cells can have several lines.
     fn format_rows(&self, panel: &[usize], cells: &[Vec<String>]) -> String {
         let mut text = String::new();
         for line in 0..cells.iter().map(Vec::len).max().unwrap_or(0) {

@@ -6,7 +6,7 @@ use super::{
 use novamind_world::events::{DealClosed, EndCause, Notice, Post, Sentiment, SubscriptionStatus, ThreadKind};
 use novamind_world::identifiers::{Group, Plan};
 
-/// Function that returns a value of a deal, for a mean over deals.
+/// A function that returns a value of a deal, for a mean over deals.
 type DealFigureFn = fn(&DealClosed) -> f64;
 
 impl MetricsDay<'_> {

@@ -14,7 +14,7 @@ use novamind_world::market::economy::Dimension;
 pub struct MetricValue {
     /// Day of the value.
     pub day: u32,
-    /// Name of the figure.
+    /// Name of the figure, as listed in docs/interfaces/golden.md#figures.
     pub figure: &'static str,
     /// Breakdown of the figure, for example a group; empty for a total.
     pub group: &'static str,
@@ -22,7 +22,7 @@ pub struct MetricValue {
     pub value: f64,
 }
 
-/// How daily values are aggregated into a figure.
+/// The aggregation of daily values into a figure.
 #[derive(Clone, Copy, PartialEq)]
 enum Aggregation {
     /// The value of the day itself.
@@ -46,7 +46,7 @@ struct DailyValue {
     value: Option<f64>,
 }
 
-/// Collects the daily figures of a run.
+/// A collector of the daily figures of a run.
 #[derive(Default)]
 pub struct MetricsCollector {
     /// Days whose figures are kept; `None` to keep all days.
@@ -73,7 +73,7 @@ impl MetricsCollector {
         MetricsCollector { is_disabled: true, ..MetricsCollector::default() }
     }
 
-    /// Creates a collector for the days in `wanted`, or for all days.
+    /// Creates a collector for the days in `wanted`, or for all days if `wanted` is `None`.
     pub fn new(wanted: Option<Vec<u32>>) -> MetricsCollector {
         MetricsCollector { recorded_days: wanted, ..MetricsCollector::default() }
     }
@@ -157,7 +157,7 @@ struct MetricsDay<'a> {
     report: &'a DayReport<'a>,
     xray: HiddenState<'a>,
     open_issues: f64,
-    /// Enterprises whose subscription ends on the day, by group.
+    /// Number of enterprises whose subscription ends on the day, by group.
     companies_left: ByGroup<f64>,
     /// Number of threads that were opened since the previous day, including threads that the player started.
     threads_opened: u32,

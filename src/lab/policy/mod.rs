@@ -16,17 +16,17 @@ use novamind_world::params::ParameterSource;
 /// A policy: a program that plays a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Policy {
-    /// Name of the policy.
+    /// Name that the policy file gives, as one line of text.
     pub name: String,
-    /// Description of the policy.
+    /// Description that the policy file gives; can be empty.
     pub description: String,
     /// Settings of the run at its start. The command line overrides these settings.
     pub start: PolicyStart,
-    /// The weekly routine of the paper's baseline.
+    /// Settings of the paper's weekly routine; `None` to play without the routine.
     pub rule_based: Option<RuleBased>,
     /// Tool calls on given days.
     pub calls: Vec<ScheduledCall>,
-    /// Rule that answers enterprises.
+    /// Rule that answers enterprises; `None` if the policy file has no section `[enterprise]`.
     pub enterprise: Option<EnterpriseRule>,
 }
 
@@ -34,13 +34,13 @@ pub struct Policy {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PolicyStart {
-    /// Cash on day 0, dollars.
+    /// Cash on day 0, dollars; `None` to use the scenario's value.
     pub cash: Option<f64>,
     /// Whether demand surges occur; `None` to use the scenario's value.
     pub surges: Option<bool>,
-    /// Name of the scenario that the run uses.
+    /// Name of the scenario that the run uses; `None` to use the default scenario.
     pub scenario: Option<String>,
-    /// Last day of the run.
+    /// Last day of the run; `None` to use the scenario's value.
     pub days: Option<u32>,
 }
 
@@ -49,17 +49,17 @@ pub struct PolicyStart {
 pub struct ScheduledCall {
     /// First decision day of the call.
     pub day: u32,
-    /// Name of the called tool.
+    /// Name of the called tool, which must not be a tool that advances time.
     pub tool: String,
     /// Arguments of the call. Symbols are resolved at the time of the call.
     pub arguments: serde_json::Value,
-    /// Number of calls on each day.
+    /// Number of calls on each of the days, at least 1.
     pub repeat: u32,
     /// Interval between repetitions in weeks; `None` if the call is not repeated.
     pub every_weeks: Option<u32>,
-    /// Last day of the repetitions, inclusive.
+    /// Last day of the repetitions, inclusive; `None` to repeat the call until the run ends.
     pub until_day: Option<u32>,
-    /// Whether a rejection of the call is ignored instead of stopping the run.
+    /// Whether the run continues if the call is rejected.
     pub may_fail: bool,
 }
 
@@ -112,9 +112,9 @@ fn default_repeat() -> u32 {
 /// An error in a policy file, with its location.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PolicyError {
-    /// Name of the policy file.
+    /// Path of the policy file, or the requested name if no file was found.
     pub source: String,
-    /// Line of the error, if known.
+    /// Line of the error in the file, from 1; `None` if the line is unknown.
     pub line: Option<usize>,
     /// Description of the error.
     pub problem: String,

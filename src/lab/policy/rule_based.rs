@@ -232,9 +232,8 @@ pub enum OperationsRuleName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CapacityRule {
-    /// Changes the capacity tier by one per week, towards the smallest tier that serves the week's usage at
-    /// 80 % utilization.
+    /// Steps of one capacity tier per week, towards the smallest tier that serves the week's usage at 80 % utilization.
     Utilisation,
-    /// Never changes the capacity tier.
+    /// A capacity tier that never changes.
     Fixed,
 }

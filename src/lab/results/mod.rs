@@ -31,15 +31,15 @@ pub use attempts::{AttemptResult, attempts_report};
 /// The result of a finished run with a score.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FinishedRun {
-    /// Name of the run.
+    /// Name of the run; empty for the idle company.
     pub run: String,
-    /// Label of the participant, if any.
+    /// Label of the participant; `None` if the run has no label.
     pub participant: Option<String>,
-    /// Name of the policy that played, if any.
+    /// Name of the policy that played the run; `None` if no policy played.
     pub policy: Option<String>,
     /// Seed of the run.
     pub seed: u64,
-    /// Generation of the released simulator whose rules the run has.
+    /// Generation of the released simulator whose rules the run uses.
     pub generation: Interface,
     /// Last day of the run.
     pub days: u32,
@@ -72,7 +72,7 @@ impl FinishedRun {
     }
 }
 
-/// How runs are grouped into rows.
+/// The grouping of runs into rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ResultsGrouping {
     /// One row per player. A player is a participant or a policy.
@@ -144,11 +144,11 @@ pub struct ResultsRow {
     pub best_cash: f64,
     /// Name of the best run; `None` for published rows and the idle company.
     pub best_run: Option<String>,
-    /// Longest survival of a run, days.
+    /// Longest survival of a run, days; `None` if the survival is not published.
     pub max_survival_days: Option<f64>,
-    /// Mean survival of the runs, days.
+    /// Mean survival of the runs, days; `None` if the survival is not published.
     pub mean_survival_days: Option<f64>,
-    /// Standard deviation of survival over all runs, days.
+    /// Standard deviation of survival over all runs, days; `None` for a single run.
     pub std_survival_days: Option<f64>,
     /// Calls per week: state-changing calls of own runs, or turns of published agents.
     pub calls_per_week: Option<f64>,
@@ -160,7 +160,7 @@ pub struct ResultsRow {
 /// The results table: own runs, the idle company and the published results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultsTable {
-    /// Rows of the table by generation, best result of a generation first.
+    /// Rows of the table by generation. The best result of each generation comes first.
     pub rows: Vec<ResultsRow>,
     /// Notes below the table.
     pub notes: Vec<String>,
@@ -169,7 +169,7 @@ pub struct ResultsTable {
 /// Name of the policy that makes no calls.
 pub const IDLE_POLICY: &str = "P0";
 
-/// Name of the row of players without a label.
+/// Name of the row for participants without a label.
 const UNNAMED_ROW: &str = "(no label)";
 
 const IDLE_ROW: &str = "idle company";

@@ -37,7 +37,8 @@ impl ShardSet {
     /// Finds the shards in the given files and folders, and checks that they are the complete set of one study.
     ///
     /// # Errors
-    /// Fails if a file is not a shard, is damaged or belongs to another study, or if a shard is missing or present twice.
+    /// Fails if a file is not a shard, is damaged or belongs to another study, or if a shard is missing or present
+    /// twice.
     pub fn find(places: &[PathBuf]) -> Result<ShardSet, MergeError> {
         let mut problems = Vec::new();
         let (mut found, mut damaged): (Vec<(PathBuf, ShardHeader)>, Vec<ShardHeader>) = Default::default();

@@ -51,7 +51,7 @@ impl Shard {
 /// The description of a shard in the first line of its file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShardHeader {
-    /// Name of the study.
+    /// Name of the study to which the shard belongs.
     pub study: String,
     /// Digest of everything on which the rows depend: program, mechanics, parameters, policies, seeds and columns.
     pub digest: String,

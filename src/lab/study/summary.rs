@@ -12,7 +12,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_report::pluralize;
 
-/// Maximum number of arms in the graph.
+/// Maximum number of arms that the graph shows.
 const MAX_CURVES: usize = 8;
 const MAX_NAMES: usize = 6;
 

@@ -82,7 +82,7 @@ impl Interpreter {
         if let Some(filter) = &wanted.filter {
             waiting.retain(|thread| filter.matches(thread));
         }
-        let names = self.session.company().company_names();
+        let names = self.session.company().enterprise_names();
         let funnels = funnels(&self.session);
         let data = json!({
             "threads": waiting.iter().map(|thread| thread.to_json(names)).collect::<Vec<Value>>(),

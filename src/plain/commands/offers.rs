@@ -87,7 +87,7 @@ impl Interpreter {
 
     /// Describes the offers: one line for each plan of a single offer, otherwise the totals.
     pub(super) fn describe_offers(&self, planned: &PlannedOffers) -> Vec<String> {
-        let names = self.session.company().company_names();
+        let names = self.session.company().enterprise_names();
         match planned.0.as_slice() {
             [] => Vec::new(),
             [single] => {

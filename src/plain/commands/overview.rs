@@ -144,7 +144,9 @@ impl Interpreter {
         let last = &journal[journal.len().saturating_sub(count as usize)..];
         let mut text: String = last
             .iter()
-            .map(|entry| format_history_entry(entry, &undone, self.session.company().company_names()) + "\n")
+            .map(|entry| {
+                format_history_entry(entry, &undone, self.session.company().enterprise_names()) + "\n"
+            })
             .collect();
         if text.is_empty() {
             text = "no actions yet".to_owned();

@@ -77,7 +77,7 @@ fn describe_week(report: &WeekReport) -> String {
     if !report.decisions.is_empty() {
         lines.push(format!("decisions before the week: {}", report.decisions.join("; ")));
     }
-    for moved in report.moved_figures.iter().take(MAX_LISTED_CHANGES) {
+    for moved in report.changed_figures.iter().take(MAX_LISTED_CHANGES) {
         let mut line = format!("{} {} → {}", figure_name(moved.name), moved.old, moved.new);
         let standing = moved.change.describe_rarity();
         if !standing.is_empty() {
@@ -128,7 +128,7 @@ fn parts_to_json(parts: &[(&'static str, f64)]) -> Value {
 }
 
 fn week_to_json(report: &WeekReport) -> Value {
-    let moved = |moved: &novamind_report::week::MovedFigure| {
+    let moved = |moved: &novamind_report::week::ChangedFigure| {
         json!({
             "figure": moved.name,
             "old": moved.change.old,
@@ -154,7 +154,7 @@ fn week_to_json(report: &WeekReport) -> Value {
         "parts": parts_to_json(&report.cash_components),
         "decided": report.decisions,
         "filed_at_limit": report.was_filed_at_limit(),
-        "moves": report.moved_figures.iter().map(moved).collect::<Vec<_>>(),
+        "moves": report.changed_figures.iter().map(moved).collect::<Vec<_>>(),
         "forecasts": report.due_forecasts.iter().map(due).collect::<Vec<_>>(),
     })
 }

@@ -46,7 +46,7 @@ impl Interpreter {
         if send {
             self.send_batch(&batch)
         } else {
-            preview_response(&batch, self.session.company().company_names())
+            preview_response(&batch, self.session.company().enterprise_names())
         }
     }
 

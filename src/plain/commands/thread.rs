@@ -68,7 +68,7 @@ impl Interpreter {
         let waiting = ThreadContext::read_all(&mut self.session).ok().and_then(|(waiting, _)| {
             waiting.into_iter().find(|thread_context| thread_context.waiting.thread == thread)
         });
-        let names = self.session.company().company_names();
+        let names = self.session.company().enterprise_names();
         let kind = text_at(first, 2).replace('_', " ");
         // In the rows of the player's turns, the number of seats is always 1, so it is read from the
         // enterprise's turns.

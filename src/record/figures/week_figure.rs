@@ -36,7 +36,7 @@ macro_rules! define_figures {
             /// All figures: the figures of the Overview in screen order, then the figures of the ledger.
             pub const ALL: &'static [WeekFigure] = &[$(WeekFigure::$figure),*];
 
-            /// Returns the name of the figure on screens.
+            /// Returns the name that screens show for the figure.
             pub fn name(self) -> &'static str {
                 match self { $(WeekFigure::$figure => $name),* }
             }
@@ -107,7 +107,7 @@ define_figures! {
 }
 
 impl WeekFigure {
-    /// Returns the figure with this name on screens. The name may be followed by a comma and a unit or `peak`.
+    /// Returns the figure that screens show under this name. The name may be followed by a comma and a unit or `peak`.
     pub fn parse_label(name: &str) -> Option<WeekFigure> {
         let is_named = |figure: &WeekFigure| name.split(',').next().is_some_and(|name| name == figure.name());
         let longer = match name {
@@ -137,7 +137,7 @@ impl WeekFigure {
         })
     }
 
-    /// Returns the name of the figure in commands and data, for example `new_subscribers`.
+    /// Returns the name that commands and data use for the figure, for example `new_subscribers`.
     pub fn id(self) -> String {
         match self {
             // Screens also show 30-day churn, but commands and data have only this figure.

@@ -52,7 +52,7 @@ pub struct Manifest {
     pub cash: f64,
     /// Name of the scenario.
     pub scenario: String,
-    /// Mode of the run.
+    /// Mode of the run, which never changes.
     pub mode: Mode,
     /// Label of the participant.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -14,7 +14,7 @@ use crate::trajectory::Line;
 
 /// The manifest of a run, and the defect of `run.toml`, if any.
 pub struct ManifestCheck {
-    /// Manifest of the run.
+    /// Manifest from the first line of the trajectory, or from `run.toml` if the first line cannot be read.
     pub manifest: Manifest,
     /// Why `run.toml` has to be rebuilt; `None` if the file agrees with the first line.
     pub problem: Option<String>,

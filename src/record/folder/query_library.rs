@@ -90,7 +90,7 @@ pub enum ChartKind {
 /// A chart of a query result: the kind of the chart and its column names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ChartSpec {
-    /// Kind of the chart.
+    /// Whether lines or bars are drawn.
     pub kind: ChartKind,
     /// Name of the column for the x axis.
     pub x_column: String,
@@ -101,11 +101,11 @@ pub struct ChartSpec {
 /// The fields in the leading comments of a statement.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct QueryHeader {
-    /// Title of the query.
+    /// Text of the `title` comment.
     pub title: Option<String>,
-    /// Description of the query result.
+    /// Text of the `what` comment, which describes the query result.
     pub description: Option<String>,
-    /// Chart of the query result.
+    /// Chart of the `chart` comment; `None` if the comment is missing or invalid.
     pub chart: Option<ChartSpec>,
 }
 
@@ -114,9 +114,9 @@ pub struct QueryHeader {
 pub struct NamedQuery {
     /// Name of the query file, without the extension.
     pub name: String,
-    /// Title of the query.
+    /// Text of the `title` comment, or the name with spaces if there is no title.
     pub title: String,
-    /// Description of the query result; may be empty.
+    /// Text of the `what` comment, which describes the query result; may be empty.
     pub description: String,
     /// SQL statement with its leading comments.
     pub sql: String,

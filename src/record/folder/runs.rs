@@ -28,7 +28,7 @@ pub struct RunSummary {
     pub played: String,
     /// Mode of the run; `None` if the run cannot be read.
     pub mode: Option<Mode>,
-    /// Seed of the run.
+    /// Seed of all random draws.
     pub seed: u64,
     /// Name of the scenario.
     pub scenario: String,
@@ -281,12 +281,12 @@ pub fn find_run_to_read(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
     find_matching_run(runs, id, |_| true)
 }
 
-/// Finds a run by id, by unique prefix, or as the `latest` run that `wanted` accepts. In the common folder, searches
-/// the runs of all participants.
+/// Finds a run by id, by unique prefix, or as the `latest` run that `is_wanted` accepts. In the common folder, also
+/// searches the runs of all participants.
 fn find_matching_run(
     runs: &Path,
     id: &str,
-    wanted: impl Fn(&RunSummary) -> bool,
+    is_wanted: impl Fn(&RunSummary) -> bool,
 ) -> Result<PathBuf, RunError> {
     let missing = || RunError::NotFound { id: id.to_owned(), folder: runs.to_owned() };
     let folders =
@@ -301,10 +301,10 @@ fn find_matching_run(
         if list.is_empty() {
             return Err(RunError::NoRuns { folder: runs.to_owned() });
         }
-        if list.iter().all(|(_, run)| run.ended.is_some() && !wanted(run)) {
+        if list.iter().all(|(_, run)| run.ended.is_some() && !is_wanted(run)) {
             return Err(RunError::AllRunsEnded { folder: runs.to_owned() });
         }
-        let newest = list.into_iter().find(|(_, run)| run.problem.is_none() && wanted(run));
+        let newest = list.into_iter().find(|(_, run)| run.problem.is_none() && is_wanted(run));
         return newest.map(|(folder, _)| folder).ok_or_else(missing);
     }
     if let Some((folder, _)) = list.iter().find(|(_, run)| !id.is_empty() && run.id == id) {
@@ -339,8 +339,8 @@ pub fn earlier_runs(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let whole = entries.map(|entry| entry.path()).filter(|folder| !is_staging_folder(folder));
     let manifests = whole.filter_map(|folder| ManifestCheck::read(&folder).ok());
     let manifests = manifests.map(|derived| derived.manifest);
-    let of_participant = manifests.filter(|manifest| manifest.participant.as_deref() == participant);
-    let mut earlier: Vec<EarlierRun> = of_participant
+    let participant_manifests = manifests.filter(|manifest| manifest.participant.as_deref() == participant);
+    let mut earlier: Vec<EarlierRun> = participant_manifests
         .map(|manifest| EarlierRun {
             run: manifest.id,
             mode: manifest.mode,

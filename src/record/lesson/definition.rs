@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::lesson_call::LessonCall;
-use super::measurement::{Measurement, RawMeasurement};
+use super::measurement::{MeasurementSpec, RawMeasurement};
 use novamind_tools::ToolId;
 
 /// The contents of a lesson file.
@@ -37,7 +37,7 @@ pub struct LessonPlan {
     pub measured: Vec<MeasuredFigure>,
 }
 
-/// Tools, screens and submissions of a lesson.
+/// Tools and screens that a lesson offers, and the submissions that it requires before a week.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LessonAccess {
@@ -160,7 +160,7 @@ pub struct LessonStep {
     pub parameters: BTreeMap<String, Value>,
     /// Question that the student answers before the step is simulated.
     pub guess: Option<Guess>,
-    /// Goals of the step.
+    /// Goals that are checked at the end of the step.
     #[serde(rename = "goal", default)]
     pub goals: Vec<LessonGoal>,
     /// Hints in the order in which they are shown, from a vague hint to the almost complete solution.
@@ -177,7 +177,7 @@ pub struct Guess {
     /// Answer format of the question.
     pub form: GuessForm,
     /// Time at which the outcome of the guess is shown.
-    pub told: OutcomeTiming,
+    pub outcome_timing: OutcomeTiming,
 }
 
 /// The time at which the outcome of a guess is measured and shown.
@@ -197,7 +197,7 @@ pub enum GuessForm {
     /// A number, which is compared with a measurement at the end of the step.
     Number {
         /// Measurement that returns the actual value.
-        outcome: Measurement,
+        outcome: MeasurementSpec,
         /// Unit of the number: `$`, `%`, or a word.
         unit: String,
     },
@@ -231,7 +231,7 @@ impl TryFrom<RawGuess> for Guess {
         let RawGuess { question, figure, sql, over, unit, choices, answer, told: outcome_timing } = file;
         let form = match (choices, answer) {
             (None, None) => GuessForm::Number {
-                outcome: Measurement::try_from(RawMeasurement { figure, sql, over })?,
+                outcome: MeasurementSpec::try_from(RawMeasurement { figure, sql, over })?,
                 unit: unit.unwrap_or_default(),
             },
             (Some(choices), Some(answer)) if figure.is_none() && sql.is_none() => {
@@ -245,7 +245,7 @@ impl TryFrom<RawGuess> for Guess {
             }
             _ => return Err("a guess needs `figure`, `sql`, or `choices` with `answer`".to_owned()),
         };
-        Ok(Guess { question, form, told: outcome_timing })
+        Ok(Guess { question, form, outcome_timing })
     }
 }
 
@@ -256,7 +256,7 @@ pub struct LessonGoal {
     /// Description of the goal for the student.
     pub text: String,
     /// Measurement that returns the value to compare at the end of the step.
-    pub measurement: Measurement,
+    pub measurement: MeasurementSpec,
     /// Bound that the measured value has to reach.
     pub bound: GoalBound,
     /// Whether the measured value is in dollars.
@@ -322,7 +322,7 @@ impl TryFrom<RawGoal> for LessonGoal {
         let (Some(bound), None) = (bounds.next(), bounds.next()) else {
             return Err("a goal needs exactly one of `at_least`, `at_most` and `relative`".to_owned());
         };
-        let measurement = Measurement::try_from(RawMeasurement { figure, sql, over })?;
+        let measurement = MeasurementSpec::try_from(RawMeasurement { figure, sql, over })?;
         let in_dollars = match unit.as_deref() {
             None => measurement.is_in_dollars(),
             Some("$") if measurement.needs_database() => true,
@@ -336,12 +336,12 @@ impl TryFrom<RawGoal> for LessonGoal {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "RawPitfall")]
 pub struct Pitfall {
-    /// Name of the pitfall.
+    /// Name by which the pitfall play and recorded events refer to the pitfall.
     pub name: String,
     /// Part in which the pitfall is checked, from 0.
     pub part: usize,
     /// Measurement that is compared with the bound after every week.
-    pub measurement: Measurement,
+    pub measurement: MeasurementSpec,
     /// Values that trigger the pitfall.
     pub bound: PitfallBound,
     /// Explanation for the student.
@@ -396,7 +396,7 @@ impl TryFrom<RawPitfall> for Pitfall {
             (None, Some(below)) => PitfallBound::Below(below),
             _ => return Err("a pitfall needs either `above` or `below`".to_owned()),
         };
-        let measurement = Measurement::try_from(RawMeasurement { figure, sql, over: None })?;
+        let measurement = MeasurementSpec::try_from(RawMeasurement { figure, sql, over: None })?;
         Ok(Pitfall { name, part: part_index(part)?, measurement, bound, say })
     }
 }
@@ -424,7 +424,7 @@ impl ReferencePlay {
     }
 
     /// Returns whether the play has calls in a part.
-    pub fn has_calls_in(&self, part: usize) -> bool {
+    pub fn has_calls_for_part(&self, part: usize) -> bool {
         self.plays.iter().any(|scheduled_calls| scheduled_calls.part == part)
     }
 }
@@ -443,7 +443,7 @@ pub struct MeasuredFigure {
     /// Description of the figure.
     pub text: String,
     /// Measurement of the figure after the week.
-    pub measurement: Measurement,
+    pub measurement: MeasurementSpec,
     /// Week of the company after which the figure is measured; defaults to the last week of the part.
     pub week: Option<u32>,
     /// Value that the lesson texts state.
@@ -483,7 +483,7 @@ impl TryFrom<RawMeasuredFigure> for MeasuredFigure {
     fn try_from(file: RawMeasuredFigure) -> Result<MeasuredFigure, String> {
         let RawMeasuredFigure { name, part, text, week, value, unit, play, scenario, parameters, .. } = file;
         let RawMeasuredFigure { figure, sql, over, .. } = file;
-        let measurement = Measurement::try_from(RawMeasurement { figure, sql, over })?;
+        let measurement = MeasurementSpec::try_from(RawMeasurement { figure, sql, over })?;
         let (part, unit) = (part_index(part)?, unit.unwrap_or_default());
         if !matches!(unit.as_str(), "" | "$" | "%" | "day") {
             return Err(format!("the unit must be $, % or day, not {unit}"));

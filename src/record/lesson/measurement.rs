@@ -4,16 +4,16 @@ use serde::Deserialize;
 
 use crate::figures::{FigureUnit, WeekFigure, WeekFigures};
 
-/// A measurement over some weeks of a company.
+/// The definition of a measurement over some weeks of a company.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measurement {
+pub struct MeasurementSpec {
     /// Source of the weekly numbers.
     pub source: NumberSource,
     /// Aggregation of the numbers over the weeks.
     pub aggregation: WeekAggregation,
 }
 
-/// Source of the numbers of a measurement.
+/// Source of the numbers that a measurement aggregates.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NumberSource {
     /// Cash at the end of each week, dollars.
@@ -43,10 +43,10 @@ pub(super) struct RawMeasurement {
     pub over: Option<String>,
 }
 
-impl TryFrom<RawMeasurement> for Measurement {
+impl TryFrom<RawMeasurement> for MeasurementSpec {
     type Error = String;
 
-    fn try_from(file: RawMeasurement) -> Result<Measurement, String> {
+    fn try_from(file: RawMeasurement) -> Result<MeasurementSpec, String> {
         let source = match (file.figure.as_deref(), file.sql) {
             (Some("cash"), None) => NumberSource::Cash,
             (Some(name), None) => {
@@ -69,11 +69,11 @@ impl TryFrom<RawMeasurement> for Measurement {
         if over != WeekAggregation::Last && matches!(source, NumberSource::Sql(_)) {
             return Err("remove `over`: an SQL statement has to select the days itself".to_owned());
         }
-        Ok(Measurement { source, aggregation: over })
+        Ok(MeasurementSpec { source, aggregation: over })
     }
 }
 
-impl Measurement {
+impl MeasurementSpec {
     /// Returns whether the measurement is a figure in dollars.
     pub fn is_in_dollars(&self) -> bool {
         match &self.source {
@@ -105,8 +105,8 @@ impl Measurement {
         }
     }
 
-    /// Returns the aggregate of a figure over weeks, or `None` if no week has a value or the source is an SQL
-    /// statement.
+    /// Returns the aggregate of a figure over weeks. Returns `None` if the source is an SQL statement. Also returns
+    /// `None` if no week has a value, unless the aggregation is a sum.
     pub fn aggregate<'a>(&self, weeks: impl Iterator<Item = &'a WeekFigures>) -> Option<f64> {
         let value = |week: &WeekFigures| match &self.source {
             NumberSource::Cash => Some(week.cash),
@@ -141,9 +141,13 @@ mod tests {
         assert_eq!(substitute_days("x > {from_day} and x <= {to_day}", 8, 14), "x > 8 and x <= 14");
     }
 
-    fn parse(figure: Option<&str>, sql: Option<&str>, over: Option<&str>) -> Result<Measurement, String> {
+    fn parse(figure: Option<&str>, sql: Option<&str>, over: Option<&str>) -> Result<MeasurementSpec, String> {
         let owned = |text: Option<&str>| text.map(str::to_owned);
-        Measurement::try_from(RawMeasurement { figure: owned(figure), sql: owned(sql), over: owned(over) })
+        MeasurementSpec::try_from(RawMeasurement {
+            figure: owned(figure),
+            sql: owned(sql),
+            over: owned(over),
+        })
     }
 
     #[test]

@@ -20,5 +20,5 @@ pub use definition::{
 };
 pub use lesson_call::LessonCall;
 pub use lesson_file::{Lesson, PLAN_FILE, TEXTS_FILE};
-pub use measurement::{Measurement, NumberSource, WeekAggregation};
+pub use measurement::{MeasurementSpec, NumberSource, WeekAggregation};
 pub use progress::LessonProgress;

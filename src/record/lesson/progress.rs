@@ -1,4 +1,4 @@
-//! The progress of a student in a lesson, derived from its plan and the recorded lines.
+//! The progress of a student in a lesson, derived from the lesson plan and the recorded lines.
 
 use std::sync::Arc;
 
@@ -107,8 +107,8 @@ impl LessonProgress {
         }
     }
 
-    /// Rejects the simulation of the next week if the question of its step is unanswered. `weeks` is the number of
-    /// weeks already simulated.
+    /// Rejects the simulation of the next week if the student has not answered the question of that week's step.
+    /// `weeks` is the number of weeks already simulated.
     ///
     /// # Errors
     /// The rejection `guess_first`.
@@ -126,8 +126,8 @@ impl LessonProgress {
 
     /// Returns the number of the latest attempt at a step.
     pub fn attempt(&self, step: usize) -> u32 {
-        let of_try = |note: &RecordedLessonEvent| note.number;
-        self.last_event(LessonEvent::Begun, step).and_then(of_try).unwrap_or(0)
+        let attempt_number = |note: &RecordedLessonEvent| note.number;
+        self.last_event(LessonEvent::Begun, step).and_then(attempt_number).unwrap_or(0)
     }
 
     /// Returns whether a step has started.

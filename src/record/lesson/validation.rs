@@ -8,7 +8,7 @@ use crate::folder::configuration::Configuration;
 
 /// A defect of a lesson file.
 pub(super) struct LessonDefect {
-    /// Text that identifies the faulty line.
+    /// Text by which the faulty line is found: the first line that contains this text.
     pub place: String,
     pub key: &'static str,
     pub problem: String,

@@ -16,7 +16,7 @@ use novamind_database::ProjectionPosition;
 /// A parsed line of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// Line number, from 0.
+    /// Number of the line in the trajectory, from 0.
     pub seq: u64,
     /// Day of the run on which the line was written.
     pub day: u32,
@@ -24,7 +24,7 @@ pub struct Line {
     pub at: String,
     /// Event that the line records.
     pub record: Record,
-    /// Hash of the line.
+    /// BLAKE3 hash of the line's bytes, in hexadecimal digits.
     pub hash: String,
     /// Bytes of the line in the file.
     text: Box<[u8]>,
@@ -115,7 +115,7 @@ impl Line {
         fields
     }
 
-    /// Returns a line for tests that is not in a file.
+    /// Returns a line that is not in a file, for tests.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn detached(seq: u64, day: u32, at: &str, record: Record) -> Line {
         let text = Value::Object(record.fields()).to_string().into_bytes();

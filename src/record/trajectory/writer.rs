@@ -45,7 +45,7 @@ pub struct TrajectoryWriter {
 }
 
 impl TrajectoryWriter {
-    /// Creates a writer for a run in memory, which keeps only the number and hash of the last line.
+    /// Creates a writer for a run in memory. The writer keeps only the number, hash and time of the last line.
     pub fn in_memory() -> TrajectoryWriter {
         TrajectoryWriter {
             file: None,
@@ -71,7 +71,7 @@ impl TrajectoryWriter {
         Ok(TrajectoryWriter { file, path: path.to_owned(), ..TrajectoryWriter::in_memory() })
     }
 
-    /// Opens or creates a file whose lines continue the last line of another file.
+    /// Opens or creates a file whose lines continue the hash chain of another file after the line `last`.
     ///
     /// # Errors
     /// The file cannot be read or created, or it is damaged.

@@ -11,13 +11,13 @@ use novamind_session::identifiers::{ByGroup, Channel, Group};
 use novamind_session::{Estimates, GroupWeek};
 use novamind_tools::ToolId;
 
-/// Minimum number of enterprises that must arrive in four weeks before missing requests are reported.
+/// Minimum number of enterprises of a group that must arrive in four weeks before missing requests are reported.
 const MIN_ENTERPRISES: u32 = 3;
 /// Upper bound of the mean of a Poisson distribution of which 0 was observed, at a confidence of 95 %: −ln 0.05,
 /// rounded up.
 const MAX_EXPECTED_WITHOUT_ANY: u32 = 3;
 
-/// Finds enterprise groups that receive advertising but request no offer.
+/// Finds enterprise groups that receive advertising but request no offers.
 pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let recent = &situation.groups[situation.groups.len().saturating_sub(4)..];
     let enterprises = situation.estimates.iter().filter(|estimates| estimates.group.is_enterprise());
@@ -37,7 +37,7 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
             pluralize(recent.len() as u32, "week"),
             format_money(ads)
         );
-        // If no deficit of the current offers is known, only the cost of advertising can be reported.
+        // If the cause is unknown, only the cost of advertising can be reported.
         let (text, proposal, place) = match offers.main_deficit() {
             missing @ (OfferDeficit::Quota | OfferDeficit::Quality) => {
                 let (remedy, proposal, place) = offers.propose_remedy(missing, ads * RISK_DAYS)?;
@@ -144,7 +144,7 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
     if ads <= 0.0 {
         return None;
     }
-    // Ads whose customers already pay more with their first bill than the ads cost are not too expensive.
+    // Ads are not too expensive if the first bills of the customers that they bring exceed their cost.
     let bill = situation.last_group_week().map_or(0.0, |groups| groups[group].revenue_per_subscriber());
     if pair.recent.cost_per_bill().is_some_and(|cost| cost < bill) {
         return None;
@@ -162,34 +162,35 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
         text,
         proposal: Some(propose_removal(ads)),
         target: target_without_ads(situation, group, |other| other == channel),
-        // Additional cost of the leads compared with the earlier cost per lead.
+        // Money at risk: the part of the cost that exceeds the cost at the earlier price per lead.
         at_risk: ads * RISK_DAYS * (1.0 - 1.0 / rise),
         is_urgent: false,
     })
 }
 
 /// Formats the cost per lead and the cost per first bill: `$372 a lead, $410 a first bill`.
-fn describe_lead_costs(spell: &AdResults) -> String {
+fn describe_lead_costs(results: &AdResults) -> String {
     let dollars = |value: f64| if value < 100.0 { dollars_and_cents(value) } else { format_money(value) };
-    let lead = match spell.cost_per_lead() {
+    let lead = match results.cost_per_lead() {
         Some(each) => format!("{} a lead", dollars(each)),
-        None => format!("no lead for {}", format_money(spell.spend)),
+        None => format!("no lead for {}", format_money(results.spend)),
     };
-    match (spell.cost_per_bill(), spell.first_bills) {
+    match (results.cost_per_bill(), results.first_bills) {
         (Some(each), _) => format!("{lead}, {} a first bill", dollars(each)),
         (None, Some(_)) => format!("{lead}, no first bill"),
         (None, None) => lead,
     }
 }
 
-/// Returns the advertising form, filled so that the budgets of a group in some channels are removed.
+/// Returns the advertising form with the current budgets. Removes the budgets of a group in those channels for which
+/// `is_removed` returns true.
 fn target_without_ads(
     situation: &DiagnosisContext<'_>,
     group: Group,
-    of: impl Fn(Channel) -> bool,
+    is_removed: impl Fn(Channel) -> bool,
 ) -> ActionTarget {
     let mut spend = situation.session.settings().targeted_ads.targeted_spend.clone();
-    for (_, groups) in spend.iter_mut().filter(|(channel, _)| of(**channel)) {
+    for (_, groups) in spend.iter_mut().filter(|(channel, _)| is_removed(**channel)) {
         groups.entry(group).and_modify(|dollars| *dollars = 0.0);
     }
     let spend: Map<String, Value> = spend

@@ -9,21 +9,21 @@ use novamind_session::identifiers::{Group, Plan};
 use novamind_session::{MAX_RUNWAY_DAYS, ModelTier, PlanRevenue};
 use novamind_tools::ToolId;
 
-/// Runway in weeks below which low cash is reported.
+/// Low cash is reported if the runway is below this number of weeks.
 const MIN_RUNWAY_WEEKS: f64 = 8.0;
 
-/// Minimum number of subscriptions of a plan for reporting its margin. Usage rates have a standard deviation
-/// of about 40 % of their mean, so the mean of ten subscriptions has a standard error of about 13 %. With
-/// fewer subscriptions, the usage of a single one can cause the loss.
+/// Minimum number of subscriptions of a plan for a report on its margin. Usage rates have a standard deviation of about
+/// 40 % of their mean, so the mean of ten subscriptions has a standard error of about 13 %. With fewer subscriptions, a
+/// single one can cause the loss.
 const MIN_SUBSCRIPTIONS_FOR_MARGIN: u32 = 10;
-/// Assumed largest ratio of the cancellations on the last day to the mean daily cancellations of the week.
-/// Usage of the last day includes customers who cancelled on that day, but revenue does not.
+/// Largest assumed ratio of the cancellations on the last day to the mean daily cancellations of the week. The usage of
+/// the last day includes customers who cancelled on that day, but the revenue does not.
 const MAX_LAST_DAY_RATIO: f64 = 3.0;
 /// Mean usage of the days of a week as a share of the usage of its last day, because less is used at weekends
 /// (`docs/mechanics/day.md`). The last day of a week has the weekday factor of day 0.
 const MEAN_DAY_SHARE: f64 = 0.936;
 
-/// Reports a problem if cash is expected to last less than eight weeks.
+/// Reports a problem if cash is expected to last for less than eight weeks.
 pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let seen = &situation.observation;
     let weeks = seen.runway_weeks.filter(|weeks| *weeks < MIN_RUNWAY_WEEKS)?;
@@ -61,9 +61,9 @@ struct SpendingBudget {
     name: &'static str,
     /// Current budget, dollars per day.
     dollars: f64,
-    /// Reduced budget at which cash lasts eight weeks, dollars per day.
+    /// Reduced budget that lets cash last for eight weeks, dollars per day.
     reduced_dollars: f64,
-    /// Form of the budget, filled with the reduced amount.
+    /// Form that sets the budget, filled with the reduced amounts.
     target: ActionTarget,
 }
 
@@ -115,7 +115,7 @@ fn largest_budget(situation: &DiagnosisContext<'_>) -> SpendingBudget {
     let largest = budgets.into_iter().max_by(|left, right| left.1.total_cmp(&right.1));
     let (name, dollars, place) =
         largest.filter(|budget| budget.1 > 0.0).unwrap_or(("", 0.0, ActionTarget::Ledger));
-    // The reduced budget is the sum of the amounts in the form, because each amount is rounded down.
+    // The reduced budget is the sum of the amounts in the form, because each of them is rounded down.
     let kept = if let ActionTarget::Call(_, arguments) = &place { sum_numbers(arguments) } else { 0.0 };
     SpendingBudget { name, dollars, reduced_dollars: kept, target: place }
 }
@@ -127,9 +127,9 @@ fn sum_numbers(arguments: &Value) -> f64 {
     }
 }
 
-/// Finds plans whose subscribers cost more in compute than they pay. Compares the revenue of the
-/// subscriptions that could use the product on the last day with the compute cost of the last day's usage,
-/// multiplied by 30. Every reported plan has a negative gross margin.
+/// Finds plans whose subscribers cost more in compute than they pay. Compares the revenue of the subscriptions that
+/// could use the product on the last day with 30 times the compute cost of that day's usage. Every reported plan has a
+/// negative gross margin.
 pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let Some(groups) = situation.last_group_week() else { return Vec::new() };
     let revenue_by_plan = situation.session.company().plan_revenue();
@@ -170,9 +170,9 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
     Plan::ALL.into_iter().filter_map(diagnose_plan).collect()
 }
 
-/// Proposes the best model tier whose compute cost is covered by the plan's revenue at the same usage. If
-/// there is none, proposes a quota at which the compute cost cannot exceed the revenue. Returns `None` if the
-/// current quota already limits the compute cost to the revenue.
+/// Proposes the best model tier whose compute cost the plan's revenue covers at the same usage. If no tier qualifies,
+/// proposes a quota that keeps the compute cost below the revenue. Returns `None` if the current quota already ensures
+/// this.
 fn propose_cheaper_setting(
     situation: &DiagnosisContext<'_>,
     plan: Plan,

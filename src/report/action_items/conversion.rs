@@ -9,10 +9,10 @@ use crate::measured_conversion::SETTINGS_JUDGED_BY_LEADS;
 use novamind_base::formatting::percent;
 use novamind_session::identifiers::{Group, Plan};
 
-/// Number of earlier weeks to compare the last week with.
+/// Number of earlier weeks that the last week is compared with.
 const COMPARED_WEEKS: usize = 4;
-/// Minimum number of leads, and minimum number of signups, in each compared period. With fewer, the normal
-/// approximation of the difference is not valid.
+/// Minimum number of leads and of signups in each compared period. With fewer, the normal approximation of the
+/// difference is not valid.
 const MIN_COUNT: u32 = 20;
 /// Finds groups of individuals whose conversion fell by more than its sampling error. Groups with a very low conversion
 /// are reported as groups without sales.
@@ -34,8 +34,8 @@ fn conversion_fall(situation: &DiagnosisContext<'_>, group: Group) -> Option<Act
         return None;
     }
     let fewer = usual * f64::from(now.leads) - f64::from(now.signups);
-    // A change before the compared weeks applies to all leads in these weeks, so it cannot explain a
-    // difference between the weeks.
+    // A change before the compared weeks affects all leads in these weeks, so it cannot explain a difference between
+    // them.
     let since = situation.observation.day.saturating_sub(7 * (earlier.len() as u32 + 1));
     let change = OfferChange::find_last(situation, &SETTINGS_JUDGED_BY_LEADS, since);
     let change_text = change.as_ref().map_or(String::new(), |change| format!(" {}", change.describe()));
@@ -60,15 +60,15 @@ fn conversion_fall(situation: &DiagnosisContext<'_>, group: Group) -> Option<Act
     })
 }
 
-/// Returns the standard error of the difference between two shares, from their pooled share.
+/// Returns the standard error of the difference between two conversions, computed from their pooled conversion.
 fn standard_error(left: &LeadFlow, right: &LeadFlow) -> f64 {
     let (leads, others) = (f64::from(left.leads), f64::from(right.leads));
     let pooled = f64::from(left.signups + right.signups) / (leads + others);
     (pooled * (1.0 - pooled) * (1.0 / leads + 1.0 / others)).sqrt()
 }
 
-/// Returns the mean list price of the plans that the group's customers signed up for in the last week,
-/// dollars per month.
+/// Returns the mean list price of the plans for which customers of the group signed up in the last week, dollars per
+/// month.
 fn mean_price(situation: &DiagnosisContext<'_>, group: Group) -> Option<f64> {
     let chosen = situation.last_group_week()?[group].chosen;
     let signups: u32 = chosen.0.iter().sum();

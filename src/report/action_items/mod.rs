@@ -1,8 +1,8 @@
 //! Problems of the company that need action, diagnosed from visible data and ranked by the money at risk.
 //!
-//! Every action item states the object, the problem and the amount. The item links to a form with proposed
-//! arguments, a thread, a group or the ledger. An amount is proposed if it follows from a formula in the
-//! documentation of the tools. There are no proposals in baseline runs.
+//! Every action item states the object, the problem and the amount. The item links to a form with proposed arguments, a
+//! thread, a group or the ledger. An amount is proposed only if it follows from a formula in the documentation of the
+//! tools. Baseline runs receive no proposals.
 
 mod advertising;
 mod cash;
@@ -25,7 +25,7 @@ use novamind_session::{
 };
 use novamind_tools::ToolId;
 
-/// Kind of problem. Among problems with equal money at risk, the earlier variant is listed first.
+/// Kind of problem. If two problems have the same money at risk, the earlier variant is listed first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Problem {
     /// Cash will be used up within a few weeks.
@@ -40,7 +40,7 @@ pub enum Problem {
     NoLeads,
     /// Leads of a group do not sign up.
     NoSales(Group),
-    /// The conversion of a group fell by more than chance explains.
+    /// The conversion of a group fell by more than chance can explain.
     ConversionFall(Group),
     /// The subscribers of a plan cost more than they pay.
     Margin,
@@ -50,7 +50,7 @@ pub enum Problem {
     Outages,
     /// Subscribers are waiting for support.
     Backlog,
-    /// More subscribers of a group cancelled than chance explains.
+    /// More subscribers of a group cancelled than chance can explain.
     Churn(Group),
     /// Enterprises of a group find no plan with sufficient quality.
     NoRequests(Group),
@@ -63,7 +63,7 @@ pub enum Problem {
 }
 
 impl Problem {
-    /// Returns the ID of the problem in interfaces for programs.
+    /// Returns the ID of the problem for programs.
     pub fn id(self) -> &'static str {
         match self {
             Problem::Runway => "runway",
@@ -86,29 +86,29 @@ impl Problem {
     }
 }
 
-/// The object where the player can solve a problem.
+/// Where the player can solve a problem.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ActionTarget {
     /// The form of a tool, filled with these arguments.
     Call(ToolId, Value),
-    /// The thread with this number.
+    /// The thread with this number, where the player can answer.
     Thread(u32),
-    /// The page of a group.
+    /// The page of a group, which shows its requirements.
     Group(Group),
-    /// The ledger of the company.
+    /// The ledger, which shows all income and costs.
     Ledger,
 }
 
 /// A problem that needs action.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActionItem {
-    /// Kind of the problem.
+    /// Which problem it is, and for which group or channel.
     pub problem: Problem,
-    /// Sentences that describe the problem, with amounts.
+    /// Sentences that describe the problem and its amounts.
     pub text: String,
     /// Sentences that propose a solution; `None` if nothing is proposed.
     pub proposal: Option<String>,
-    /// The object where the player can solve the problem.
+    /// Where the player can solve the problem.
     pub target: ActionTarget,
     /// Money at risk over the next four weeks, dollars.
     pub at_risk: f64,
@@ -131,14 +131,14 @@ struct DiagnosisContext<'a> {
     session: &'a Session,
 }
 
-/// Number of days over which money at risk is computed.
+/// Number of days for which money at risk is computed.
 const RISK_DAYS: f64 = 28.0;
-/// Minimum money at risk for a report, as a share of revenue plus costs.
+/// Minimum money at risk for a report, as a share of upcoming revenue plus upcoming costs.
 const MIN_RISK_SHARE: f64 = 0.01;
 const DAYS_PER_MONTH: f64 = 30.0;
-/// Largest deviation of a weekly figure that is attributed to chance, in standard errors. A normally
-/// distributed error exceeds three standard errors in one direction once in 740 weeks, so a company with ten
-/// groups has a false report about once in 74 weeks.
+/// Largest deviation of a weekly figure that is attributed to chance, in standard errors. A normally distributed error
+/// exceeds three standard errors in one direction once in 740 weeks. A company with ten groups therefore has a false
+/// report about once in 74 weeks.
 const MAX_CHANCE: f64 = 3.0;
 
 impl<'a> DiagnosisContext<'a> {
@@ -194,8 +194,8 @@ impl<'a> DiagnosisContext<'a> {
     }
 }
 
-/// Returns the problems that need action: urgent problems first, then by money at risk. Returns an empty list after
-/// the end of the run.
+/// Returns the problems that need action: urgent problems first, then by money at risk. Returns an empty list if the
+/// run has ended.
 pub fn action_items(session: &Session) -> Vec<ActionItem> {
     if session.ended().is_some() {
         return Vec::new();
@@ -224,8 +224,8 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     found.extend(service::diagnose_backlog(&situation));
     found.extend(retention::churn_waves(&situation));
     let moved = situation.upcoming_revenue() + situation.upcoming_costs();
-    // Threads that wait for an answer and plans that lose money are reported even if little money is at risk: an unanswered
-    // thread ends, and the loss of a plan grows with its sales.
+    // Waiting threads and unprofitable plans are reported even if little money is at risk: an unanswered thread ends,
+    // and the loss of a plan grows with its sales.
     let is_always_reported = |problem: Problem| matches!(problem, Problem::Threads | Problem::Margin);
     found.retain(|need| is_always_reported(need.problem) || need.at_risk >= MIN_RISK_SHARE * moved);
     // Problems that link to a tool that the lesson has locked are not reported.
@@ -259,7 +259,7 @@ impl ActionItem {
     }
 }
 
-/// Rounds an amount up to two significant digits, so that proposals contain round figures.
+/// Rounds an amount up to two significant digits, so that proposals contain round numbers.
 fn round_up_to_two_digits(value: f64) -> f64 {
     if value <= 0.0 {
         return 0.0;

@@ -9,14 +9,14 @@ use novamind_session::identifiers::Group;
 use novamind_session::{Decisions, SettingChange};
 use novamind_tools::ToolId;
 
-/// The last decision that changed some of the settings that customers evaluate.
+/// The last decision that changed settings by which customers judge an offer.
 pub(super) struct OfferChange<'a> {
     day: u32,
     changes: Vec<&'a SettingChange>,
 }
 
 impl<'a> OfferChange<'a> {
-    /// Returns the last decision after `since` that changed one of `tools` from a value above 0.
+    /// Returns the last decision after day `since` that changed a setting of `tools` from a value above 0.
     pub(super) fn find_last(
         situation: &'a DiagnosisContext<'_>,
         tools: &[ToolId],
@@ -41,8 +41,8 @@ impl<'a> OfferChange<'a> {
         format!("On day {} you changed {}{more}.", self.day, words.join(", "))
     }
 
-    /// Returns the form that contains the first changed setting, filled with the earlier values of the plans.
-    /// Returns the page of the group if the settings already have the earlier values again.
+    /// Returns the form that contains the first changed setting, filled with the earlier values of the plans. Returns
+    /// the page of the group if the current settings already equal the earlier values.
     pub(super) fn restore_target(&self, situation: &DiagnosisContext<'_>, group: Group) -> ActionTarget {
         let Some(first) = self.changes.first() else { return ActionTarget::Group(group) };
         let tool = first.setting.tool();

@@ -1,5 +1,5 @@
-//! Properties of the action items of generated companies. The amounts and times of an item follow from the
-//! numbers in its text and agree with the figures on other screens, and the proposed call is accepted.
+//! Properties of the action items of generated companies: the amounts and times of an item follow from the numbers in
+//! its text, they agree with the figures on other screens, and the tool accepts the proposed call.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use novamind_session::{NewRun, Storage};
 
 const WEEKS: u32 = 12;
 
-/// A generated company: its start, its opening decisions, and a second decision in a later week.
+/// A generated company: its seed and starting cash, its first decisions, and a second decision in a later week.
 #[derive(Debug, Clone)]
 struct Company {
     seed: u64,
@@ -113,8 +113,7 @@ fn numbers_excludes_identifiers() {
     assert_eq!(numbers("D_S05: $1,234.50 of 7 (12.5%) on A. 3 weeks, 9."), [1234.5, 7.0, 12.5, 3.0, 9.0]);
 }
 
-/// Asserts that a displayed number differs from the computed number by at most `tolerance`, which allows for
-/// rounding.
+/// Asserts that a displayed number differs from the computed number by at most `tolerance`, the largest rounding error.
 #[track_caller]
 fn assert_near(shown: f64, computed: f64, tolerance: f64, need: &ActionItem) {
     assert!((shown - computed).abs() <= tolerance + 1e-6, "{shown} {computed}: {need:#?}");
@@ -131,23 +130,23 @@ fn check_item(need: &ActionItem, session: &mut Session) {
             session.preview_call(tool, arguments).unwrap_or_else(|refusal| panic!("{need:#?}: {refusal}"));
         assert!(!preview.changes.is_empty() || preview.cost_now > 0.0, "the call has no effect: {need:#?}");
     }
-    let (said, proposed) = (numbers(&need.text), numbers(need.proposal.as_deref().unwrap_or_default()));
+    let (stated, proposed) = (numbers(&need.text), numbers(need.proposal.as_deref().unwrap_or_default()));
     match need.problem {
-        Problem::Margin => check_margin(need, &said, &proposed, session),
-        Problem::ConversionFall(group) => check_conversion_fall(need, &said, group, session),
-        Problem::Churn(group) => check_churn(need, &said, group, session),
-        Problem::NoSales(group) => check_no_sales(need, &said, &proposed, group, session),
-        Problem::Capacity => check_capacity(need, &said, &proposed),
-        Problem::Overload => check_overload(need, &said, &proposed),
-        Problem::Backlog => check_backlog(need, &said, &proposed),
+        Problem::Margin => check_margin(need, &stated, &proposed, session),
+        Problem::ConversionFall(group) => check_conversion_fall(need, &stated, group, session),
+        Problem::Churn(group) => check_churn(need, &stated, group, session),
+        Problem::NoSales(group) => check_no_sales(need, &stated, &proposed, group, session),
+        Problem::Capacity => check_capacity(need, &stated, &proposed),
+        Problem::Overload => check_overload(need, &stated, &proposed),
+        Problem::Backlog => check_backlog(need, &stated, &proposed),
         Problem::Outages => {
-            let (&[_, spend, share], &[more, reduced]) = (&said[..], &proposed[..]) else {
+            let (&[_, spend, share], &[more, reduced]) = (&stated[..], &proposed[..]) else {
                 panic!("{need:#?}")
             };
             assert!(more > spend && reduced <= share / 2.0 + 0.1, "{need:#?}");
         }
         Problem::LeadCost(..) => check_lead_cost(need),
-        Problem::NoAdResults(group) => check_ads_without_results(need, &said, &proposed, group, session),
+        Problem::NoAdResults(group) => check_ads_without_results(need, &stated, &proposed, group, session),
         Problem::Threads => {
             let day = f64::from(session.day());
             let deadline = need.text.split("by day ").skip(1).map(|rest| numbers(rest)[0]);
@@ -163,14 +162,14 @@ fn check_item(need: &ActionItem, session: &mut Session) {
             let [spend, total] = proposed[..] else { panic!("{need:#?}") };
             assert_eq!(total, spend * 7.0 * Channel::ALL.len() as f64, "{need:#?}");
         }
-        // Other tests in this crate and in the crate `session` check the runway.
+        // The runway is checked by other tests, in this crate and in the crate `session`.
         Problem::Runway | Problem::NoPrice | Problem::NoRequests(_) => {}
     }
 }
 
-/// Checks that the compute cost exceeds the revenue and that the Product screen also shows a negative margin.
-fn check_margin(need: &ActionItem, said: &[f64], proposed: &[f64], session: &mut Session) {
-    let [_, revenue, compute] = said[..] else { panic!("{need:#?}") };
+/// Checks that the compute cost exceeds the revenue, and that the margin on the Product screen is also negative.
+fn check_margin(need: &ActionItem, stated: &[f64], proposed: &[f64], session: &mut Session) {
+    let [_, revenue, compute] = stated[..] else { panic!("{need:#?}") };
     assert!(compute > revenue, "{need:#?}");
     let plan = Plan::ALL.into_iter().find(|plan| need.text.starts_with(&format!("Plan {plan} ")));
     let plan = plan.expect("a plan");
@@ -187,10 +186,10 @@ fn check_margin(need: &ActionItem, said: &[f64], proposed: &[f64], session: &mut
     }
 }
 
-/// Checks that the shares and the difference follow from the counts, and that the counts equal those of
+/// Checks that the conversions and their difference follow from the counts, and that the counts equal those of
 /// [`fits`].
-fn check_conversion_fall(need: &ActionItem, said: &[f64], group: Group, session: &Session) {
-    let [signed, leads, share, _, usual_signed, usual_leads, usual, fewer] = said[..8] else {
+fn check_conversion_fall(need: &ActionItem, stated: &[f64], group: Group, session: &Session) {
+    let [signed, leads, share, _, usual_signed, usual_leads, usual, fewer] = stated[..8] else {
         panic!("{need:#?}")
     };
     assert_near(share, 100.0 * signed / leads, 0.05, need);
@@ -203,17 +202,17 @@ fn check_conversion_fall(need: &ActionItem, said: &[f64], group: Group, session:
     assert_eq!((f64::from(week.leads), f64::from(week.signups)), (leads, signed), "{need:#?}");
 }
 
-fn check_churn(need: &ActionItem, said: &[f64], group: Group, session: &Session) {
-    let [gone, weeks, expected] = said[..3] else { panic!("{need:#?}") };
+fn check_churn(need: &ActionItem, stated: &[f64], group: Group, session: &Session) {
+    let [gone, weeks, expected] = stated[..3] else { panic!("{need:#?}") };
     assert!(gone >= 2.0 * (expected - 0.5) && (2.0..=4.0).contains(&weeks), "{need:#?}");
     let last = session.company().group_weeks().last().expect("a week");
     assert_eq!(f64::from(last[group].left), gone, "{need:#?}");
 }
 
-fn check_no_sales(need: &ActionItem, said: &[f64], proposed: &[f64], group: Group, session: &Session) {
+fn check_no_sales(need: &ActionItem, stated: &[f64], proposed: &[f64], group: Group, session: &Session) {
     let week = &session.company().group_weeks().last().expect("a week")[group];
-    assert_eq!(said[0], f64::from(week.leads), "{need:#?}");
-    let share = said[if week.signed == 0 { 1 } else { 2 }];
+    assert_eq!(stated[0], f64::from(week.leads), "{need:#?}");
+    let share = stated[if week.signed == 0 { 1 } else { 2 }];
     assert_near(share, 100.0 * f64::from(week.signed) / f64::from(week.leads), 0.05, need);
     let proposal = need.proposal.as_deref().unwrap_or_default();
     if proposal.contains("in total") {
@@ -229,9 +228,9 @@ fn check_no_sales(need: &ActionItem, said: &[f64], proposed: &[f64], group: Grou
     }
 }
 
-/// Checks that the tier is exceeded in the stated week at the stated growth.
-fn check_capacity(need: &ActionItem, said: &[f64], proposed: &[f64]) {
-    let [busiest, share, units, tier, growth] = said[..] else { panic!("{need:#?}") };
+/// Checks that usage exceeds the tier in the stated week if it grows at the stated rate.
+fn check_capacity(need: &ActionItem, stated: &[f64], proposed: &[f64]) {
+    let [busiest, share, units, tier, growth] = stated[..] else { panic!("{need:#?}") };
     assert_near(share, 100.0 * busiest / units, 0.5, need);
     let weeks = libm::log(units / busiest) / libm::log(1.0 + growth / 100.0);
     match need.text.contains("of next week exceeds") {
@@ -241,8 +240,8 @@ fn check_capacity(need: &ActionItem, said: &[f64], proposed: &[f64]) {
     assert!(proposed[0] == tier + 1.0 && proposed[1] > units && proposed[2] > proposed[3], "{need:#?}");
 }
 
-fn check_overload(need: &ActionItem, said: &[f64], proposed: &[f64]) {
-    let [busiest, excess, units, tier] = said[..] else { panic!("{need:#?}") };
+fn check_overload(need: &ActionItem, stated: &[f64], proposed: &[f64]) {
+    let [busiest, excess, units, tier] = stated[..] else { panic!("{need:#?}") };
     assert_near(excess, 100.0 * (busiest / units - 1.0), 0.05, need);
     if let [next, capacity, cost, more] = proposed[..] {
         assert!(next > tier && more > 0.0 && cost >= more, "{need:#?}");
@@ -252,8 +251,8 @@ fn check_overload(need: &ActionItem, said: &[f64], proposed: &[f64]) {
 }
 
 /// Checks that the backlog is cleared after the stated number of days.
-fn check_backlog(need: &ActionItem, said: &[f64], proposed: &[f64]) {
-    let ([waiting, ..], [_, solved, inflow, days]) = (said, proposed) else { panic!("{need:#?}") };
+fn check_backlog(need: &ActionItem, stated: &[f64], proposed: &[f64]) {
+    let ([waiting, ..], [_, solved, inflow, days]) = (stated, proposed) else { panic!("{need:#?}") };
     assert!(solved > inflow, "{need:#?}");
     assert_eq!((waiting / (solved - inflow)).ceil(), *days, "{need:#?}");
 }
@@ -271,12 +270,12 @@ fn check_lead_cost(need: &ActionItem) {
 /// and that the form removes the named budget.
 fn check_ads_without_results(
     need: &ActionItem,
-    said: &[f64],
+    stated: &[f64],
     proposed: &[f64],
     group: Group,
     session: &mut Session,
 ) {
-    let (spend, weeks, bills) = (said[0], said[1], said[said.len() - 1]);
+    let (spend, weeks, bills) = (stated[0], stated[1], stated[stated.len() - 1]);
     assert!(weeks >= 4.0 && spend > bills, "{need:#?}");
     let from = f64::from(session.day()) - 7.0 * weeks;
     let sql = format!(
@@ -286,7 +285,7 @@ fn check_ads_without_results(
     let rows = session.query(&sql).expect("rows").rows;
     let of_column = |column| novamind_database::number_at(&rows[0], column);
     assert_near(spend, of_column(0), 0.5, need);
-    let leads = if need.text.contains("brought no lead") { 0.0 } else { said[2] };
+    let leads = if need.text.contains("brought no lead") { 0.0 } else { stated[2] };
     assert_eq!((of_column(1), of_column(2)), (leads, 7.0 * weeks), "{need:#?}");
     let ads = session.settings().targeted_ads.clone();
     let now: f64 = ads.targeted_spend.values().filter_map(|groups| groups.get(&group)).sum();

@@ -10,18 +10,18 @@ use novamind_session::WaitingThread;
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tools::ToolId;
 
-/// Minimum number of cancellations in a week that counts as a churn wave.
+/// Minimum number of cancellations in the week of a churn wave.
 const MIN_WAVE_CANCELLATIONS: f64 = 20.0;
 /// Number of weeks after which all customers who signed up in the first week have been billed.
 const BILLING_CYCLE_WEEKS: usize = 5;
-/// Number of earlier weeks to compare a week with.
+/// Number of earlier weeks that a week is compared with.
 const COMPARED_WEEKS: usize = 4;
 /// Minimum number of earlier weeks for a comparison.
 const MIN_COMPARED_WEEKS: usize = 2;
-/// Minimum ratio of the cancellations of a churn wave to the usual cancellations. The number of bills is only
-/// an estimate: a healthy company in its tenth week has 1.9 times the usual cancellations.
+/// Minimum ratio of the cancellations of a churn wave to the usual cancellations. It is high because the number of
+/// bills is only an estimate: a healthy company in its tenth week has 1.9 times the usual cancellations.
 const MIN_CHURN_WAVE_RATIO: f64 = 2.0;
-/// Number of days in which every subscriber is billed once. Subscribers make their decisions on billing days.
+/// Number of days between two bills of a subscriber. Subscribers decide on billing days whether to stay.
 const BILLING_DAYS: u32 = 30;
 /// Settings that influence whether a subscriber cancels on a billing day.
 const SETTINGS_JUDGED_AT_BILLING: [ToolId; 5] = [
@@ -46,20 +46,26 @@ pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<Actio
     let value = |thread: &WaitingThread| {
         prices.price(thread).map_or(0.0, |(price, _)| f64::from(thread.seats) * price)
     };
-    // The first thread in order of payments, then of seats.
+    // The thread with the highest payments or, among equal payments, the most seats.
     let first = waiting
         .iter()
         .max_by(|left, right| value(left).total_cmp(&value(right)).then(left.seats.cmp(&right.seats)))?;
-    let (who, fate) = match waiting.len() {
+    let (who, consequence) = match waiting.len() {
         1 => (
-            format!("{} waits", situation.session.company().company_names().name_with_number(first.customer)),
+            format!(
+                "{} waits",
+                situation.session.company().enterprise_names().name_with_number(first.customer)
+            ),
             "the thread ends",
         ),
         more => (format!("{} wait", pluralize(more as u32, "enterprise")), "their threads end"),
     };
     Some(ActionItem {
         problem: Problem::Threads,
-        text: format!("{who} for an answer ({}). Without an answer, {fate} {by}.", prices.describe(waiting)),
+        text: format!(
+            "{who} for an answer ({}). Without an answer, {consequence} {by}.",
+            prices.describe(waiting)
+        ),
         proposal: None,
         target: ActionTarget::Thread(first.thread),
         at_risk: prices.monthly_payments(waiting) * RISK_DAYS / DAYS_PER_MONTH,
@@ -67,12 +73,12 @@ pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<Actio
     })
 }
 
-/// Prices at which payments of waiting enterprises are estimated.
+/// Prices for estimating the payments of waiting enterprises.
 struct ThreadPrices {
     fits: Vec<Fit>,
     /// Estimated usage of each known group, units per seat per day.
     usage: BTreeMap<Group, f64>,
-    /// Lowest list price, which ranks the item if no price is known.
+    /// Lowest list price, for estimating the money at risk if no price is known.
     lowest_list_price: f64,
 }
 
@@ -88,8 +94,8 @@ impl ThreadPrices {
         }
     }
 
-    /// Returns the price that an enterprise requested, otherwise the list price of the cheapest plan that can suit it,
-    /// with this plan. Returns `None` if neither exists.
+    /// Returns the price that an enterprise asked for, otherwise the list price of the cheapest plan that can suit it,
+    /// together with this plan. Returns `None` if neither exists.
     fn price(&self, thread: &WaitingThread) -> Option<(f64, Option<Plan>)> {
         if let Some(asked) = thread.asked {
             return Some((asked, None));
@@ -101,8 +107,8 @@ impl ThreadPrices {
         Some((fit.plans[plan].list_price, Some(plan)))
     }
 
-    /// Returns the estimated payments of the enterprises with a price, or all payments at the lowest list price if no
-    /// enterprise has a price.
+    /// Returns the estimated monthly payments of the enterprises with a known price. If no price is known, returns the
+    /// payments of all enterprises at the lowest list price.
     fn monthly_payments(&self, waiting: &[WaitingThread]) -> f64 {
         let payment = |thread: &WaitingThread| Some(self.price(thread)?.0 * f64::from(thread.seats));
         let known: f64 = waiting.iter().filter_map(payment).sum();
@@ -110,7 +116,7 @@ impl ThreadPrices {
         if known > 0.0 { known } else { self.lowest_list_price * f64::from(seats) }
     }
 
-    /// Describes the seats, the estimated payments and the prices of the estimate.
+    /// Describes the seats, the estimated payments, and the prices on which the estimate is based.
     fn describe(&self, waiting: &[WaitingThread]) -> String {
         let seats = pluralize(waiting.iter().map(|thread| thread.seats).sum(), "seat");
         let prices: Vec<(f64, Option<Plan>)> =
@@ -135,7 +141,7 @@ impl ThreadPrices {
     }
 }
 
-/// Finds groups with more cancellations than chance explains.
+/// Finds groups with more cancellations than chance can explain.
 pub(super) fn churn_waves(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let people = Group::all().filter(|group| !group.is_enterprise());
     people.filter_map(|group| churn_wave(situation, group)).collect()
@@ -145,7 +151,7 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     let weeks = situation.groups;
     let gone = |at: usize| f64::from(weeks[at][group].left);
     let last = weeks.len().checked_sub(1)?;
-    // Subscribers cancel on billing days. Cancellations are therefore compared with the number of bills.
+    // Subscribers cancel on billing days, so cancellations are compared with the number of bills.
     let signups = |at: usize| f64::from(weeks[at][group].chosen.0.iter().sum::<u32>());
     let exposed = |at: usize| expected_bills(at, &signups);
     let before = last.saturating_sub(COMPARED_WEEKS).max(BILLING_CYCLE_WEEKS)..last;
@@ -160,8 +166,8 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
         return None;
     }
     let mean_price = weeks[last][group].revenue_per_subscriber();
-    // Older decisions cannot explain the cancellations: between those decisions and last week, all
-    // subscribers were billed.
+    // Decisions before this day cannot explain the cancellations, because all subscribers were billed between those
+    // decisions and the last week.
     let since = situation.observation.day.saturating_sub(BILLING_DAYS + 7);
     let change = OfferChange::find_last(situation, &SETTINGS_JUDGED_AT_BILLING, since);
     let change_text = change.as_ref().map_or(String::new(), |change| format!(" {}", change.describe()));
@@ -180,8 +186,8 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     })
 }
 
-/// Returns the approximate number of subscribers who are billed for another month in a week: those who signed
-/// up one or more billing periods earlier. Earlier cancellations are not subtracted.
+/// Returns the approximate number of subscribers who are billed for another month in a week: those who signed up one or
+/// more billing periods earlier. Does not subtract earlier cancellations.
 fn expected_bills(week: usize, signups: &dyn Fn(usize) -> f64) -> f64 {
     let weeks_per_period = f64::from(BILLING_DAYS) / 7.0;
     let mut bills = 0.0;
@@ -198,9 +204,9 @@ fn expected_bills(week: usize, signups: &dyn Fn(usize) -> f64) -> f64 {
     bills
 }
 
-/// Returns the largest excess of a count over its expectation that is attributed to chance, if the
-/// expectation was estimated from a rate: [`MAX_CHANCE`] standard errors of a Poisson count with the given
-/// exposures.
+/// Returns the largest excess of a count over its expectation that is attributed to chance: [`MAX_CHANCE`] standard
+/// errors of a Poisson count. The expectation is estimated from a rate, and the exposures are the numbers of bills in
+/// both periods.
 fn chance_of_count(expected: f64, exposure: f64, exposure_before: f64) -> f64 {
     MAX_CHANCE * (expected * (1.0 + exposure / exposure_before.max(1.0))).sqrt()
 }

@@ -13,13 +13,13 @@ use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
 use novamind_tools::ToolId;
 
 const MIN_WEEKLY_LEADS: u32 = 20;
-/// Conversion below which a group counts as a group without sales.
+/// A group counts as a group without sales if its conversion is below this share.
 pub(super) const MIN_CONVERSION: f64 = 0.1;
-/// Share of the estimated usage that a quota must cover to be sufficient.
+/// A quota is sufficient if it covers at least this share of the estimated usage.
 const MIN_QUOTA_COVERAGE: f64 = 0.8;
-/// Age above which an estimate counts as outdated, days.
+/// An estimate is outdated if it is older than this number of days.
 const OUTDATED_STUDY_DAYS: u32 = 28;
-/// Proposed budget to test a channel, dollars per day.
+/// Proposed budget for testing a channel, dollars per day.
 const TRIAL_AD_SPEND: f64 = 50.0;
 
 /// Reports a problem if no plan has a price, or if plans with a price have a quota of 0.
@@ -78,8 +78,8 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         .enumerate()
         .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
         .collect();
-    // The form contains half of the estimate in the sentence. The sentence states the estimate, because it
-    // differs from the middle of the displayed range.
+    // The form contains half of the estimate. The sentence states the estimate, because it differs from the middle of
+    // the displayed range.
     let texts: Vec<String> = budgets
         .iter()
         .map(|estimates| {
@@ -101,16 +101,16 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
     }
 }
 
-/// Reports a problem if no advertising is paid and no subscribers bring word of mouth.
+/// Reports a problem if no ads are running and no subscribers spread the word.
 pub(super) fn missing_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let lead_count =
         situation.last_week().map_or(0, |week| week.new_individual_leads + week.new_enterprise_leads);
-    let silent = situation.observation.subscribers + situation.observation.seats == 0;
-    if situation.daily_ad_spend > 0.0 || lead_count > 0 || !silent {
+    let has_no_subscribers = situation.observation.subscribers + situation.observation.seats == 0;
+    if situation.daily_ad_spend > 0.0 || lead_count > 0 || !has_no_subscribers {
         return None;
     }
-    // Selects the group with the smallest quality deficit on the current plans. Ties are broken by the
-    // deficit on the best model tier, then by the highest budget.
+    // Select the group with the smallest quality deficit on the current plans, then on the best model tier, then the
+    // group with the highest budget.
     let group = situation.individuals().min_by(|left, right| {
         let now = |estimates: &Estimates| {
             (estimates.required_quality - best_delivered_quality(situation, estimates.group)).max(0.0)
@@ -162,8 +162,7 @@ pub(super) enum OfferDeficit {
     Price,
     Quota,
     Quality,
-    /// Price, quota and quality each meet the estimates, but customers require a higher quality at this
-    /// price.
+    /// Price, quota and quality each meet the estimates, but customers require a higher quality at this price.
     Balance,
 }
 
@@ -233,7 +232,7 @@ impl<'a> GroupOffers<'a> {
         self.situation.settings.prices[plan]
     }
 
-    /// Returns the share of a customer's estimated usage that the quota of a plan covers.
+    /// Returns the share of a customer's estimated usage that the quota of a plan covers, from 0 to 1.
     fn quota_coverage(&self, plan: Plan) -> f64 {
         (self.situation.settings.quotas[plan].units() / self.estimates.account_usage().max(1e-9)).min(1.0)
     }
@@ -243,20 +242,20 @@ impl<'a> GroupOffers<'a> {
     }
 
     fn affordable_plans(&self) -> impl Iterator<Item = Plan> + '_ {
-        // Enterprises negotiate their price, so every plan counts as affordable for them.
+        // Enterprises negotiate their price, so they can afford every plan.
         let negotiates = self.estimates.group.is_enterprise();
         self.plans().filter(move |plan| negotiates || self.price(*plan) <= self.estimates.budget)
     }
 
-    /// Returns the affordable plan with the fewest deficits. If several plans have the fewest deficits, the plan with
-    /// the highest delivered quality is returned.
+    /// Returns the affordable plan with the fewest deficits. Among plans with equally few deficits, returns the plan
+    /// with the highest delivered quality.
     fn best_plan(&self) -> Option<Plan> {
         let quality = |plan: &Plan| self.quality.by_plan[*plan];
         let lacks = |plan: &Plan| {
             u8::from(self.quota_coverage(*plan) < MIN_QUOTA_COVERAGE)
                 + u8::from(quality(plan) < self.estimates.required_quality)
         };
-        // Customers choose the cheaper of two plans with equal quality.
+        // Among plans of equal quality, customers choose the cheaper plan.
         let price = |plan: &Plan| self.price(*plan);
         self.affordable_plans().max_by(|left, right| {
             lacks(right)
@@ -266,11 +265,11 @@ impl<'a> GroupOffers<'a> {
         })
     }
 
-    /// Describes the quality of the best plan. Also names a plan with higher quality whose quota does not
-    /// cover the usage, if there is one.
+    /// Describes the quality of the best plan. Also names the plan with higher quality whose quota does not cover the
+    /// usage, if there is such a plan.
     fn describe_best_plan(&self, plan: Plan, delivered: f64) -> String {
         let quality = |plan: Plan| self.quality.by_plan[plan];
-        // Screens show the range of the budget, but plans are compared with the point estimate.
+        // Screens show the range of the budget, but this comparison uses the estimate.
         let scope = match self.estimates.group.is_enterprise() {
             true => String::new(),
             false => {
@@ -304,8 +303,8 @@ impl<'a> GroupOffers<'a> {
         self.situation.observation.changes.iter().any(|change| offer_tools.contains(&change.setting.tool()))
     }
 
-    /// Returns the description of a deficit, a proposed solution and its target. Proposes a new market study first if
-    /// the estimate is outdated.
+    /// Returns the description of a deficit, a proposed solution, and the place where the player can apply it. If the
+    /// estimate is outdated, proposes a new market study first.
     pub(super) fn propose_remedy(
         &self,
         missing: OfferDeficit,
@@ -412,8 +411,7 @@ impl<'a> GroupOffers<'a> {
                 )?;
                 Some((text, proposal, place))
             }
-            // Last week's leads did not see an offer that changed today, so their decisions say nothing about
-            // this offer.
+            // The leads of the last week did not see an offer that changed today, so their decisions do not judge it.
             OfferDeficit::Balance if self.was_changed_today() => None,
             OfferDeficit::Balance => {
                 let plan = self.best_plan()?;
@@ -433,8 +431,8 @@ impl<'a> GroupOffers<'a> {
     }
 }
 
-/// Proposes the lowest model tier above the current tier that delivers sufficient quality at a compute cost
-/// that the price covers.
+/// Proposes the lowest model tier above the current one that delivers sufficient quality at a compute cost that the
+/// price covers.
 fn propose_better_model(
     situation: &DiagnosisContext<'_>,
     group: Group,
@@ -445,8 +443,8 @@ fn propose_better_model(
     let models = &situation.terms.models;
     let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     let product = delivered / now.multiplier;
-    // A model tier whose compute costs more than the plan earns is not proposed. This limit does not apply to
-    // enterprises, because they negotiate their price.
+    // A model tier is not proposed if its compute costs more than the plan earns. Enterprises are exempt, because they
+    // negotiate their price.
     let used = situation.group_estimates(group)?.account_usage().min(situation.settings.quotas[plan].units())
         * DAYS_PER_MONTH;
     let pays = |unit_cost: f64| group.is_enterprise() || used * unit_cost <= situation.settings.prices[plan];
@@ -464,7 +462,7 @@ fn propose_better_model(
     ))
 }
 
-/// Proposes a better model tier if one is sufficient and profitable. Otherwise proposes development for the group, and
+/// Proposes a better model tier if one is sufficient and profitable. Otherwise proposes development for the group and
 /// states whether its cost exceeds the money at risk.
 fn propose_better_quality(
     situation: &DiagnosisContext<'_>,
@@ -478,8 +476,7 @@ fn propose_better_quality(
     }
     let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     const PROPOSED_DEVELOPMENT_SPEND: f64 = 5_000.0;
-    // Nothing is proposed if the group already receives this budget, because the quality will rise without a
-    // change.
+    // If the group already receives this budget, the quality will rise without a change, so nothing is proposed.
     let mut spend = situation.session.settings().targeted_development.targeted_spend.clone();
     if spend.get(&group).is_some_and(|spend| *spend >= PROPOSED_DEVELOPMENT_SPEND) {
         return None;

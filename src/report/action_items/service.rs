@@ -12,9 +12,9 @@ use novamind_tools::ToolId;
 
 /// Number of coming weeks for which capacity must be sufficient.
 const CAPACITY_HORIZON_WEEKS: f64 = 2.0;
-/// Outages are reported if the share of days with an outage exceeds this value.
+/// Outages are reported if they occur on more than this share of days.
 const MAX_OUTAGE_SHARE: f64 = 0.01;
-/// A backlog is reported if the share of subscribers waiting for support exceeds this value.
+/// A backlog is reported if more than this share of subscribers waits for support.
 const MAX_BACKLOG_SHARE: f64 = 0.02;
 /// Number of days in which the proposed operations budget clears the backlog.
 const BACKLOG_CLEARANCE_DAYS: f64 = 7.0;
@@ -28,11 +28,11 @@ pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<Acti
     if busiest > now.units {
         return Some(diagnose_overload(situation, week, now));
     }
-    // No usage has been measured yet for a capacity tier that was chosen today.
+    // Usage has not been measured yet with a capacity tier that was chosen today.
     if situation.observation.changes.iter().any(|change| change.setting == SettingId::CapacityTier) {
         return None;
     }
-    // The week is computed from the rounded growth that the sentence shows.
+    // The week is computed from the rounded growth in the sentence, so that readers can verify it.
     let growth = (PeakProjection::from_weeks(situation.weeks)?.growth * 1_000.0).round() / 1_000.0;
     if growth <= 1.0 {
         return None;
@@ -114,12 +114,12 @@ pub(super) fn diagnose_outages(situation: &DiagnosisContext<'_>) -> Option<Actio
     if now < MAX_OUTAGE_SHARE {
         return None;
     }
-    // The smallest round amount that halves the frequency of outages.
+    // The smallest round amount that makes outages half as frequent.
     let more = (1..=200)
         .map(|step| operations + 50.0 * f64::from(step))
         .find(|dollars| share(*dollars) <= now / 2.0)?;
     let at_risk = situation.upcoming_revenue() * (now * RISK_DAYS).min(1.0);
-    // Spending that exceeds the possible savings is not proposed.
+    // Do not propose spending that exceeds the possible savings.
     if (more - operations) * RISK_DAYS > at_risk {
         return None;
     }
@@ -153,7 +153,7 @@ pub(super) fn diagnose_backlog(situation: &DiagnosisContext<'_>) -> Option<Actio
     }
     let (base, per_dollar) = situation.terms.issues_solved;
     let operations = situation.settings.operations + situation.session.settings().targeted_operations.total();
-    // Subscribers with an open issue do not open a second one, so more issues are opened after the backlog is cleared.
+    // Subscribers with an open issue do not open another one, so more issues are opened once the backlog is cleared.
     let free = (people - f64::from(week.open_issues)).max(1.0);
     let inflow = opened * people / free;
     let needed = inflow + f64::from(week.open_issues) / BACKLOG_CLEARANCE_DAYS;
@@ -167,7 +167,7 @@ pub(super) fn diagnose_backlog(situation: &DiagnosisContext<'_>) -> Option<Actio
         return None;
     }
     let solved = (base + per_dollar * dollars).round();
-    // The number of days is computed from the rounded numbers that the sentence shows.
+    // The number of days is computed from the rounded numbers in the sentence, so that readers can verify it.
     let days = (f64::from(week.open_issues) / (solved - inflow.round()).max(1.0)).ceil();
     Some(ActionItem {
         problem: Problem::Backlog,

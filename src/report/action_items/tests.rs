@@ -1,5 +1,5 @@
-//! Tests companies that have one problem each. The problem must be the first action item. A healthy company
-//! has no action items.
+//! Tests with companies that have one problem each: this problem must be the first action item. A healthy company must
+//! have no action items.
 
 use serde_json::{Value, json};
 
@@ -44,7 +44,7 @@ fn play_company(seed: u64, cash: f64, calls: &[(&str, Value)], weeks: usize) -> 
     session
 }
 
-/// Returns the first action item, after checking that the tool accepts the proposed arguments.
+/// Returns the first action item. Also checks that the tools accept the proposed arguments of all items.
 #[track_caller]
 fn first_action_item(session: &Session) -> ActionItem {
     let all = action_items(session);
@@ -314,7 +314,7 @@ fn backlog_item_names_the_operations_spend_that_clears_it_in_a_week() {
         Problem::Backlog,
         &[" wait for support.", "expected when no one waits, and the backlog in "],
     );
-    // The proposed number of days must follow from the numbers in both sentences.
+    // The proposed number of days must follow from the numbers in the two sentences.
     let numbers: Vec<f64> = format!("{} {}", need.text, need.proposal.as_deref().unwrap_or_default())
         .replace(',', "")
         .split(|sign: char| !sign.is_ascii_digit())
@@ -383,7 +383,8 @@ fn expiring_threads_item_links_to_the_most_valuable_thread() {
         Problem::Threads,
         &["enterprises wait for an answer", "Without an answer, their threads end by day"],
     );
-    // The amount is computed with the list price of a plan that the text names: plan A lacks the quota.
+    // The payments are computed from the list price of a plan that the text names. It is not plan A, whose quota is too
+    // small.
     let text = need.describe();
     assert!(text.contains(" a month at ") && !text.contains("plan A"), "{text}");
     let ActionTarget::Thread(first) = need.target else { panic!("{need:?}") };
@@ -407,12 +408,12 @@ fn short_runway_is_the_first_action_item() {
         crate::formatting::format_money(proposed)
     );
     assert!(need.describe().contains(&text), "{}: {text}", need.describe());
-    let mut mended = session;
-    mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");
+    let mut fixed = session;
+    fixed.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");
     assert!(
-        mended.company().observe().runway_weeks.is_none_or(|weeks| weeks >= 7.99),
+        fixed.company().observe().runway_weeks.is_none_or(|weeks| weeks >= 7.99),
         "{:?}",
-        mended.company().observe().runway_weeks
+        fixed.company().observe().runway_weeks
     );
 }
 
@@ -449,9 +450,9 @@ fn budgets_in_texts_match_the_form() {
     let session = play_company(3, 400_000.0, &healthy_calls_with(&[("set_targeted_ad_spend", ads)]), 1);
     let need = assert_first_problem(&session, Problem::Runway, &["The largest budget is advertising"]);
     let ActionTarget::Call(ToolId::SetTargetedAdSpend, arguments) = &need.target else { panic!("{need:?}") };
-    let mut mended = session;
-    mended.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
-    let kept = mended.settings().targeted_ads.total();
+    let mut fixed = session;
+    fixed.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
+    let kept = fixed.settings().targeted_ads.total();
     let text = format!("At {} a day", crate::formatting::format_money(kept));
     assert!(need.describe().contains(&text), "{}: {text}", need.describe());
 }
@@ -479,9 +480,9 @@ fn advertising_to_enterprises_without_requests_is_found() {
     let Problem::NoRequests(group) = need.problem else { panic!("{need:?}") };
     let ActionTarget::Call(_, arguments) = &need.target else { panic!("{need:?}") };
     let before = session.settings().targeted_ads.clone();
-    let mut mended = session;
-    mended.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
-    let after = &mended.settings().targeted_ads;
+    let mut fixed = session;
+    fixed.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
+    let after = &fixed.settings().targeted_ads;
     let saved = before.total() - after.total();
     assert!(
         saved > 0.0

@@ -1,5 +1,5 @@
-//! A shareable card that summarizes a run, as text that is 80 columns wide or as a picture. The card shows
-//! the cash curve, turning points, figures and the scenario.
+//! A shareable card that summarizes a run, as text of 80 columns or as a picture. The card shows the cash curve,
+//! turning points, figures and the scenario.
 
 mod svg;
 mod text;
@@ -14,7 +14,7 @@ use novamind_session::Generation;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct LabeledFigure {
-    /// Formatted value of the figure.
+    /// Value with its unit, as text.
     value: String,
     name: String,
 }

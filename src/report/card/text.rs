@@ -8,7 +8,7 @@ const CURVE_ROWS: usize = 10;
 const LABEL_WIDTH: usize = 10;
 const FIGURE_WIDTH: usize = 26;
 
-/// Block characters that are filled from the bottom in steps of one eighth.
+/// Block characters, filled from the bottom by zero to eight eighths.
 const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 pub fn to_text(card: &Card) -> String {
@@ -35,7 +35,7 @@ fn figure_lines(facts: &[LabeledFigure]) -> [String; 2] {
     [row(|fact| &fact.value), row(|fact| &fact.name)]
 }
 
-/// Draws a column of block characters, from zero up to the cash, for each of several equally spaced days.
+/// Draws the cash on equally spaced days as columns of block characters that start at zero.
 fn curve_lines(cash: &[f64]) -> Vec<String> {
     let last = cash.len().saturating_sub(1);
     let max = cash.iter().copied().fold(0.0, f64::max);

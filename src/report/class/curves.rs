@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{ClassView, DEFAULT_FIGURE, RankedStudent};
 use novamind_course::ClassRun;
 
-/// The line or the points of a student in a drawing.
+/// The line or the points of one student in a drawing.
 pub struct StudentPoints<'a> {
     /// Label of the student; `None` for the reference play.
     pub label: Option<&'a str>,
@@ -13,7 +13,7 @@ pub struct StudentPoints<'a> {
     pub points: Vec<(f64, f64)>,
 }
 
-/// Returns the cash by day in a part of the lesson, for the reference play and every ranked student.
+/// Returns the cash by day in a part of the lesson, first for the reference play, then for every ranked student.
 pub fn student_curves<'a>(
     view: &'a ClassView<'a>,
     ranking: &[RankedStudent<'a>],
@@ -31,11 +31,11 @@ pub fn student_curves<'a>(
 
 /// A scatter plot of a figure against a decision.
 pub struct Scatter<'a> {
-    /// Name of the decision on the horizontal axis, which shows its mean over the decided weeks.
+    /// Decision on the horizontal axis. The axis shows its mean over the weeks in which the student decided.
     pub decision: String,
-    /// Name of the figure on the vertical axis, which shows its value in the last week.
+    /// Figure on the vertical axis. The axis shows its value in the last week.
     pub figure: String,
-    /// One point for each student.
+    /// One point per student, at the values of the decision and the figure.
     pub points: Vec<StudentPoints<'a>>,
 }
 
@@ -47,7 +47,7 @@ fn runs_in_part<'a>(ranking: &[RankedStudent<'a>], part: u32) -> Vec<(&'a str, &
     ranking.iter().filter_map(run_in_part).collect()
 }
 
-/// Returns the decisions of a part in which students differ, starting with the largest difference. Parts are numbered from 1.
+/// Returns the decisions of a part in which students differ, largest difference first. Parts are numbered from 1.
 pub fn differing_decisions(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
     let runs = runs_in_part(ranking, part);
     names_by_difference(&runs.iter().map(|(_, run)| &run.evidence.decisions).collect::<Vec<_>>())
@@ -77,8 +77,8 @@ pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u3
     Some(Scatter { decision, figure, points })
 }
 
-/// Returns the names of the values in which students differ. Names are sorted by the number of distinct values, then
-/// by the range relative to the maximum.
+/// Returns the names of the values in which students differ, sorted by the number of distinct values, then by the range
+/// relative to the maximum.
 fn names_by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
     let spread = |name: &String| {
         let values = || all.iter().map(|by_name| by_name.get(name).copied().unwrap_or(0.0));

@@ -20,9 +20,9 @@ pub(super) struct PointDrawing<'a> {
     pub x_label: String,
     /// Lines or points to draw.
     pub points: &'a [StudentPoints<'a>],
-    /// Whether the points of a student are connected.
+    /// Whether lines connect the points of a student.
     pub is_line: bool,
-    /// Whether the diagonal of equal values is drawn.
+    /// Whether the diagonal is drawn, on which both values are equal.
     pub has_diagonal: bool,
 }
 
@@ -79,7 +79,7 @@ pub(super) fn draw(
             row(to)
         );
     }
-    // Later marks cover earlier ones: the reference play covers the students, and the highlighted student covers the
+    // Later marks cover earlier ones. The reference play covers the students, and the highlighted student covers the
     // reference play.
     let (good, students): (Vec<_>, Vec<_>) =
         drawing.points.iter().partition(|student_points| student_points.label.is_none());

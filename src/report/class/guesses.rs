@@ -50,7 +50,8 @@ pub fn class_questions<'a>(view: &'a ClassView<'a>) -> Vec<ClassQuestion<'a>> {
     all
 }
 
-/// Returns the first run of each student in a part. Guesses of later tries are ignored because the student knows the outcome.
+/// Returns the first run of each student in a part. Ignores guesses of later tries, because the student then knows the
+/// outcome.
 fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
     let part_runs: Vec<&ClassRun> = view.valid_runs().filter(|run| run.evidence.part == part).collect();
     let is_first = |at: usize| at == 0 || part_runs[at - 1].label != part_runs[at].label;
@@ -86,7 +87,7 @@ pub struct PitfallCount<'a> {
 /// Returns the pitfalls that students triggered, most frequent first.
 pub fn pitfall_counts<'a>(view: &'a ClassView<'a>) -> Vec<PitfallCount<'a>> {
     let known = view.lesson.map(|lesson| lesson.plan.pitfalls.as_slice()).unwrap_or_default();
-    let met_by = |name: &str| {
+    let count_students = |name: &str| {
         let labels: std::collections::BTreeSet<&str> = view
             .valid_runs()
             .filter(|run| run.evidence.pitfalls.iter().any(|pitfall| pitfall == name))
@@ -98,7 +99,7 @@ pub fn pitfall_counts<'a>(view: &'a ClassView<'a>) -> Vec<PitfallCount<'a>> {
     let counted = known.iter().map(|pitfall| PitfallCount {
         name: &pitfall.name,
         explanation: say(&pitfall.say),
-        students: met_by(&pitfall.name),
+        students: count_students(&pitfall.name),
     });
     let mut all: Vec<PitfallCount<'a>> = counted.filter(|pitfall_count| pitfall_count.students > 0).collect();
     all.sort_by(|one, other| other.students.cmp(&one.students).then_with(|| one.name.cmp(other.name)));

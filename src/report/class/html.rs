@@ -1,5 +1,5 @@
-//! Results of a class as a self-contained HTML page for a projector, without scripts. Radio buttons, which
-//! the user selects by mouse or arrow keys, highlight a student.
+//! Results of a class as a self-contained HTML page for a projector, without scripts. Radio buttons, which the user
+//! selects with the mouse or the arrow keys, highlight a student.
 
 use std::fmt::Write;
 
@@ -32,7 +32,7 @@ pub fn class_to_html(view: &ClassView<'_>) -> String {
         pluralize(finished as u32, "run"),
         escape_html(&view.describe_measure())
     );
-    // The CSS selectors match only elements after the radio buttons, so the buttons are written first.
+    // A CSS selector matches only elements that follow the radio buttons, so the buttons are written first.
     for (at, student) in ranking.iter().enumerate() {
         let checked = if Some(student.label) == lit { " checked=\"checked\"" } else { "" };
         let name = escape_html(&student.name);

@@ -25,28 +25,28 @@ use novamind_course::{
 
 const DEFAULT_FIGURE: &str = "cash";
 
-/// The results of a class with display options.
+/// The results of a class, and the options for displaying them.
 pub struct ClassView<'a> {
-    /// The class with its students.
+    /// What was handed out, and to which students.
     pub class: &'a Class,
     /// The lesson of the class; `None` if a run was handed out.
     pub lesson: Option<&'a Arc<Lesson>>,
-    /// The submissions of the class.
+    /// The submissions, and the results of the reference play.
     pub collection: &'a ClassCollection,
-    /// Display options of the results.
+    /// How the results are displayed.
     pub display: ClassDisplayOptions,
 }
 
-/// Display options of the results of a class.
+/// Options for displaying the results of a class.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ClassDisplayOptions {
     /// Whether ranks are shown instead of labels.
     pub hides_names: bool,
-    /// Label of the highlighted student; `None` for the first student of the ranking.
+    /// Label of the highlighted student; `None` to highlight the first student of the ranking.
     pub highlighted_student: Option<String>,
-    /// Decision of the scatter plot; `None` for the decision in which students differ most.
+    /// Decision on the horizontal axis of the scatter plot; `None` for the decision in which students differ most.
     pub decision: Option<String>,
-    /// Figure of the scatter plot; `None` for cash.
+    /// Figure on the vertical axis of the scatter plot; `None` for cash.
     pub figure: Option<String>,
 }
 
@@ -120,8 +120,8 @@ impl ClassView<'_> {
         self.lesson?.plan.parts.get((run.evidence.part as usize).checked_sub(1)?)
     }
 
-    /// Returns the ratio of a goal's value to its value in the reference play on the same seed. Steps and
-    /// goals are numbered from 0.
+    /// Returns the value of a goal divided by its value in the reference play on the same seed. Steps and goals are
+    /// numbered from 0.
     fn goal_share(&self, run: &ClassRun, step: usize, goal: usize) -> Option<f64> {
         let value = |evidence: &Evidence| evidence.steps.get(step)?.goals.get(goal)?.value;
         let part = self.part_of_run(run)?;
@@ -135,8 +135,8 @@ impl ClassView<'_> {
         all.into_iter().find(|good| (good.part, good.seed) == (of.part, of.seed))
     }
 
-    /// Returns the score of a run relative to the reference play on the same seed. The score is based on the last
-    /// goal, or on cash if the part has no goals.
+    /// Returns the score of a run relative to the reference play on the same seed. The score is based on the last goal
+    /// or, if the part has no goals, on cash.
     fn score_share(&self, run: &ClassRun) -> Option<f64> {
         let part = self.part_of_run(run)?;
         match ranked_goal(part) {
@@ -149,7 +149,7 @@ impl ClassView<'_> {
         }
     }
 
-    /// Describes the measure by which the ranking is sorted.
+    /// Describes the measure by which students are ranked.
     pub fn describe_measure(&self) -> String {
         let Some(lesson) = self.lesson else {
             return "cash on the last day that every run has reached".to_owned();

@@ -8,15 +8,15 @@ use novamind_course::{ClassRun, RunVerdict};
 pub struct RankedStudent<'a> {
     /// Label of the student.
     pub label: &'a str,
-    /// Displayed name: the label, or the rank if labels are hidden.
+    /// Name for display: the label, or the rank if names are hidden.
     pub name: String,
     /// Score relative to the reference play, or cash in dollars if there is no lesson.
     pub score: f64,
-    /// The best finished run of each part of the lesson, or the student's only run if there is no lesson.
+    /// The best finished run of each part of the lesson. If there is no lesson, the student's only run.
     pub runs: Vec<&'a ClassRun>,
 }
 
-/// Returns the students by score, highest score first. Omits students who have no run that counts.
+/// Returns the students who have a run that counts, highest score first.
 pub fn rank_students<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
     let day = common_day(view);
     let rank_student = |label: &'a str| {

@@ -1,4 +1,4 @@
-//! `class.csv`: a row for each submitted run, and descriptions of its columns.
+//! `class.csv` with one row per submitted run, and the descriptions of its columns.
 
 use super::ClassView;
 use crate::tables::column::{Column, columns};

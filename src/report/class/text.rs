@@ -9,13 +9,13 @@ use crate::plot::{PlotSeries, plot_report};
 use novamind_base::formatting::{compact_number, escape_control_characters, percent};
 use novamind_course::{ClassFinding, RunVerdict};
 
-/// Describes a finding and the action that the instructor can take.
+/// Describes a finding, and what the instructor can do about it.
 pub fn describe_finding(finding: &ClassFinding) -> String {
     match finding {
         ClassFinding::Unreadable { label, path, problem } => {
             let who = label.as_ref().map(|label| format!("{label}: ")).unwrap_or_default();
             let place = path.display().to_string();
-            // Most problem texts already contain the path.
+            // Most descriptions of problems already contain the path.
             let place = if problem.contains(&place) { String::new() } else { format!("{place}: ") };
             format!("{who}not collected: {place}{problem}")
         }
@@ -89,7 +89,7 @@ fn headline(view: &ClassView<'_>) -> String {
     format!("{} · {}", view.title(), describe_submission_count(view))
 }
 
-/// Summarizes the number of students and submissions.
+/// Summarizes how many students the class has and how many runs they submitted.
 pub fn describe_submission_count(view: &ClassView<'_>) -> String {
     let students = view.class.students.len() as u32;
     let of = |verdict: RunVerdict| view.collection.runs.iter().filter(|run| run.verdict == verdict).count();
@@ -131,7 +131,7 @@ pub fn class_to_text(view: &ClassView<'_>) -> String {
         }
     }
     match view.display.hides_names {
-        // Findings are omitted if names are hidden, because findings contain labels of students.
+        // If names are hidden, findings are omitted, because they contain labels of students.
         true => text,
         false => {
             let wrong: String = view
@@ -176,17 +176,17 @@ pub fn format_score(view: &ClassView<'_>, student: &RankedStudent<'_>) -> String
 }
 
 impl RankedStudent<'_> {
-    /// Returns the highest try number of the counted runs.
+    /// Returns the highest try number in the runs that count.
     pub fn max_try(&self) -> u32 {
         self.runs.iter().map(|run| run.evidence.tries).max().unwrap_or(0)
     }
 
-    /// Returns the number of hints used in the counted runs.
+    /// Returns the number of hints used in the runs that count.
     pub fn hint_count(&self) -> u32 {
         self.runs.iter().map(|run| run.evidence.hints).sum()
     }
 
-    /// Formats the number of reached goals and of judged goals: `2/3`.
+    /// Formats the number of reached goals and the number of judged goals: `2/3`.
     pub fn format_goals(&self) -> String {
         let goals = || self.runs.iter().flat_map(|run| &run.evidence.steps).flat_map(|step| &step.goals);
         format!("{}/{}", goals().filter(|goal| goal.met).count(), goals().count())

@@ -1,5 +1,4 @@
-//! Text for breakpoints: conditions, the reason why a run stopped, and the day on which a condition became
-//! true.
+//! Texts for breakpoints: conditions, the reason why a run stopped, and the days on which a condition became true.
 
 use super::clean_up_numbers;
 use crate::formatting::pluralize;
@@ -22,8 +21,8 @@ pub fn describe_breakpoints(set: &[Breakpoint]) -> Vec<String> {
     }
 }
 
-/// Explains why a run stopped. Lists each breakpoint that became true with both sides of its condition, or states that
-/// no breakpoint became true.
+/// Explains why a run stopped. For each breakpoint that became true, shows both sides of its condition. Otherwise,
+/// states that none became true.
 pub fn describe_stop(run: &BreakpointRun, day: u32, breakpoints: usize) -> Vec<String> {
     let hit = |hit: &BreakpointHit| {
         let BreakpointHit { breakpoint, state: judged } = hit;
@@ -80,7 +79,8 @@ fn describe_still_true(true_breakpoint: &StillTrueBreakpoint, day: u32) -> Strin
     )
 }
 
-/// Describes whether a condition is true and since which day. Shows both sides of the comparison before and after that day.
+/// Describes whether a condition is true and since which day. Shows both sides of the comparison on that day and on the
+/// day before.
 pub fn describe_condition_history(condition_history: &ConditionHistory) -> Vec<String> {
     let ConditionHistory { condition, today, last_true, last_false } = condition_history;
     let is = if today.is_true { "true" } else { "false" };
@@ -100,8 +100,8 @@ pub fn describe_condition_history(condition_history: &ConditionHistory) -> Vec<S
     clean_up_numbers(lines)
 }
 
-/// Lists the days on which a condition became true. Marks the day on which the condition's figure had its
-/// first value.
+/// Lists the days on which a condition became true. Marks a day if the figure of the condition had its first value on
+/// this day.
 pub fn describe_condition_days(
     condition: &Condition,
     found: &[ConditionState],
@@ -119,8 +119,8 @@ pub fn describe_condition_days(
     clean_up_numbers(std::iter::once(head).chain(found.iter().map(line)).collect())
 }
 
-/// Formats both sides of a comparison: `churn(S1) over 7 = 0.0523 > 0.05 (day before 0.0481)`. A false comparison is
-/// shown with the opposite operator.
+/// Formats both sides of a comparison: `churn(S1) over 7 = 0.0523 > 0.05 (day before 0.0481)`. If the comparison is
+/// false, shows the opposite operator.
 fn describe_comparison(condition: &Condition, judged: &ConditionState) -> String {
     let value = |value: Option<f64>, others: &[f64]| {
         value.map_or("no value".to_owned(), |number| format_distinct(number, others))
@@ -166,7 +166,8 @@ fn opposite_symbol(relation: ComparisonOperator) -> &'static str {
     }
 }
 
-/// Formats a number with the fewest decimals that distinguish it from the other numbers. Whole numbers have no decimals.
+/// Formats a number with the fewest decimals that distinguish it from the other numbers. Whole numbers have no
+/// decimals.
 fn format_distinct(value: f64, others: &[f64]) -> String {
     if value.fract() == 0.0 && value.abs() < 1e15 {
         return format!("{value:.0}");

@@ -1,5 +1,5 @@
-//! Debug commands that inspect hidden state or change a parameter, and their results. Plain mode and the console share
-//! these commands (docs/debugging.md).
+//! Debug commands that inspect hidden state or change a parameter, and the results of these commands. Plain mode and
+//! the console share them (docs/debugging.md).
 
 use serde_json::Value;
 
@@ -22,7 +22,7 @@ const SET_USAGE: &str =
 pub enum InspectionCommand {
     /// `find CONDITION`: the days on which a condition became true.
     Find(Condition),
-    /// `who FIGURE [DAY]`: the writes to a figure on a day. The default is the last day.
+    /// `who FIGURE [DAY]`: the writes to a figure on a day, by default the last day.
     Who(WriteTarget, Option<u32>),
     /// `diff DAY DAY`: the differences between the ends of two days.
     Diff(u32, u32),
@@ -52,13 +52,13 @@ pub enum InspectionOutput {
 }
 
 impl InspectionCommand {
-    /// First words of the commands.
+    /// First word of each command.
     pub const COMMAND_NAMES: [&str; 4] = ["find", "who", "diff", "set"];
 
     /// Parses a command line, which starts with one of [`InspectionCommand::COMMAND_NAMES`].
     ///
     /// # Errors
-    /// Returns an error with the problem and its column.
+    /// Returns an error that states the problem and its column.
     pub fn parse(line: &str) -> Result<InspectionCommand, ParseError> {
         let mut reader = LineParser::new(line);
         reader.skip_whitespace();
@@ -89,7 +89,7 @@ impl InspectionCommand {
     /// Parses the arguments of `find`, which start at `column`.
     ///
     /// # Errors
-    /// Returns an error with the problem and its column.
+    /// Returns an error that states the problem and its column.
     pub fn parse_find(rest: &str, column: usize) -> Result<InspectionCommand, ParseError> {
         rest.parse().map(InspectionCommand::Find).map_err(|problem| at_line_column(problem, column))
     }
@@ -97,7 +97,7 @@ impl InspectionCommand {
     /// Parses the arguments of `who`.
     ///
     /// # Errors
-    /// Returns an error with the problem and its column.
+    /// Returns an error that states the problem and its column.
     pub fn parse_who(rest: &str, column: usize) -> Result<InspectionCommand, ParseError> {
         let read = WriteTarget::parse_with_day(rest);
         read.map(|(target, day)| InspectionCommand::Who(target, day))
@@ -107,7 +107,7 @@ impl InspectionCommand {
     /// Parses the arguments of `diff`.
     ///
     /// # Errors
-    /// Returns an error with the problem and its column.
+    /// Returns an error that states the problem and its column.
     pub fn parse_diff(arguments: &[Argument]) -> Result<InspectionCommand, ParseError> {
         let days: Vec<u32> = arguments.iter().map(Argument::as_u32).collect::<Result<_, _>>()?;
         match days[..] {
@@ -119,7 +119,7 @@ impl InspectionCommand {
     /// Parses the arguments of `set`.
     ///
     /// # Errors
-    /// Returns an error with the problem and its column.
+    /// Returns an error that states the problem and its column.
     pub fn parse_set(arguments: &[Argument]) -> Result<InspectionCommand, ParseError> {
         let usage = || ParseError::at_first_argument(arguments, SET_USAGE);
         let (key, value, rest) = match arguments {
@@ -154,7 +154,7 @@ impl InspectionCommand {
         matches!(self, InspectionCommand::Set(..))
     }
 
-    /// Checks that the run permits a command, without parsing its arguments.
+    /// Checks whether the run permits the command that starts with `word`. Does not parse the arguments of the command.
     ///
     /// # Errors
     /// Returns `not_in_this_mode` if the command is not permitted.
@@ -169,8 +169,8 @@ impl InspectionCommand {
     /// Executes the command and records the inspection or the change.
     ///
     /// # Errors
-    /// Returns the errors of [`Inspector::find_condition_days`], [`Inspector::figure_writes`], [`Inspector::compare_days`],
-    /// [`CompanyView::debug_parameters`] and [`Session::set_parameter`].
+    /// Returns the errors of [`Inspector::find_condition_days`], [`Inspector::figure_writes`],
+    /// [`Inspector::compare_days`], [`CompanyView::debug_parameters`] and [`Session::set_parameter`].
     ///
     /// [`CompanyView::debug_parameters`]: novamind_session::CompanyView::debug_parameters
     /// [`Inspector::find_condition_days`]: novamind_insight::Inspector::find_condition_days
@@ -223,7 +223,7 @@ impl InspectionOutput {
     }
 }
 
-/// Converts the column of a parse error from the argument to the whole line.
+/// Converts a column that counts from the start of an argument to a column of the whole line.
 fn at_line_column(problem: ConditionParseError, column: usize) -> ParseError {
     ParseError { text: problem.message, column: column + problem.column - 1 }
 }

@@ -1,4 +1,4 @@
-//! Text for the differences between two days of a run, or between two runs on one day.
+//! Texts for the differences between two days of a run, or between two runs on one day.
 
 use serde_json::{Value, json};
 
@@ -9,8 +9,9 @@ use novamind_insight::{CustomerDifference, DayDifference, RunDifference};
 const MAX_LISTED_FIGURES: usize = 40;
 /// Minimum number of decimals of a figure below one thousand.
 const MIN_DECIMALS: usize = 4;
-const MIN_DECIMALS_LARGE: usize = 2;
-/// Maximum number of decimals, used to distinguish close numbers.
+/// Minimum number of decimals of a figure of one thousand or more.
+const MIN_DECIMALS_FROM_1000: usize = 2;
+/// Maximum number of decimals. More than the minimum are used only if they are necessary to distinguish close numbers.
 const MAX_DECIMALS: usize = 12;
 const MAX_LISTED_PARAMETERS: usize = 20;
 
@@ -19,7 +20,8 @@ pub fn describe_day_difference(found: &DayDifference, (one, other): (u32, u32)) 
     describe_difference(found, (&format!("day {one}"), &format!("day {other}")), "on")
 }
 
-/// Describes the differences between two named states. `before` is the preposition before a name: `on` a day or `in` a run.
+/// Describes the differences between two named states. `before` is the preposition that stands before a name: `on` for
+/// a day, `in` for a run.
 fn describe_difference(found: &DayDifference, names: (&str, &str), before: &str) -> Vec<String> {
     if found.is_empty() {
         return vec!["no differences".to_owned()];
@@ -145,7 +147,7 @@ fn format_distinct(value: f64, other: f64) -> String {
     if value.fract() == 0.0 {
         return grouped_number(value, 0);
     }
-    let min = if value.abs() >= 1000.0 { MIN_DECIMALS_LARGE } else { MIN_DECIMALS };
+    let min = if value.abs() >= 1000.0 { MIN_DECIMALS_FROM_1000 } else { MIN_DECIMALS };
     let differs = |decimals: &usize| grouped_number(value, *decimals) != grouped_number(other, *decimals);
     match (min..=MAX_DECIMALS).find(differs) {
         Some(decimals) => grouped_number(value, decimals),

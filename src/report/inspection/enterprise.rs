@@ -1,4 +1,4 @@
-//! Text for the inspection of an enterprise.
+//! Texts for the inspection of an enterprise.
 
 use super::{clean_up_numbers, indented_table};
 use crate::formatting::pluralize;
@@ -6,8 +6,8 @@ use novamind_insight::{EnterpriseThreadDay, EnterpriseView};
 use novamind_session::OfferResponse;
 use novamind_session::identifiers::Plan;
 
-/// Describes the open threads of an enterprise on a day: perceived quality, acceptance limits, and the
-/// enterprise's answer on this day to an offer.
+/// Describes the open threads of an enterprise on a day: perceived quality, acceptance limits, and how the enterprise
+/// would answer an offer on this day.
 pub fn describe_enterprise(view: &EnterpriseView) -> Vec<String> {
     let EnterpriseView { customer, group, day, days } = view;
     let mut lines = vec![format!("enterprise {customer} · {group} · day {day}")];

@@ -1,4 +1,4 @@
-//! Text for the inspection of an individual: the individual's decisions, and the terms that determine them.
+//! Texts for the inspection of an individual: decisions, and the terms that determine them.
 
 use super::{clean_up_numbers, indented_table};
 use novamind_insight::{
@@ -13,7 +13,8 @@ pub const SATISFACTION_PREFIX: &str = "satisfaction:";
 /// Number of days between successive satisfaction values in the list.
 const SATISFACTION_STEP_DAYS: usize = 7;
 
-/// Describes an individual: headline, participation curve, plans today and at the last bill, satisfaction and events.
+/// Describes an individual: the last decision, the participation curve, the plans today and at the last bill,
+/// satisfaction and events.
 pub fn describe_individual(view: &IndividualView) -> Vec<String> {
     let first = &view.signup;
     let arrival = format!("arrived on day {} through {}", first.day, first.source.id());
@@ -43,7 +44,7 @@ pub fn describe_individual(view: &IndividualView) -> Vec<String> {
     clean_up_numbers(lines)
 }
 
-/// Describes the decision of the individual on a day, and the terms that would have changed the decision.
+/// Describes the individual's decision on the inspected day, and the terms that were decisive for it.
 fn headline(view: &IndividualView) -> String {
     let Some(individual_day) = view.shown_state() else { return signup_headline(view) };
     let WeighedDecision { choice, plans, decisive_terms: turning, .. } = &individual_day.weighed_decision;

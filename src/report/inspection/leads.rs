@@ -1,15 +1,15 @@
-//! Text for the equation that determines the leads of a group.
+//! Texts for the equation that determines the leads of a group.
 
 use super::clean_up_numbers;
 use novamind_insight::{LeadEquation, LeadFactor};
 
-/// Returns the index of the line for a factor in the result of [`describe_lead_equation`].
+/// Returns the index of the line that describes a factor in the result of [`describe_lead_equation`].
 pub fn factor_line_index(factor: LeadFactor) -> usize {
     2 + factor as usize
 }
 
-/// Describes the lead equation of the last day and the range of each factor over all days. Also shows λ, the expected
-/// number of leads, with the factors in `held` fixed.
+/// Describes the lead equation of the last day, and the range of each factor over all days. Also shows λ, the expected
+/// number of leads, if the factors in `held` have the given values.
 pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<String> {
     let Some(lead_equation) = days.last() else { return Vec::new() };
     let mut lines = vec![format!("leads of {} on day {}", lead_equation.group, lead_equation.day)];
@@ -45,7 +45,8 @@ pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)])
     clean_up_numbers(lines)
 }
 
-/// Formats the lead equation of a day: `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, actual 104 (p 0.56)`.
+/// Formats the lead equation of a day: `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, actual 104 (p
+/// 0.56)`.
 fn format_equation(lead_equation: &LeadEquation) -> String {
     let factors = LeadFactor::ALL.map(|factor| format!("{factor} {:.4}", lead_equation.factor(factor)));
     let mut sources: Vec<String> =

@@ -1,11 +1,11 @@
-//! Text for the inspection of competitors and drift.
+//! Texts for the inspection of competitors and drift.
 
 use super::{clean_up_numbers, indented_table};
 use novamind_insight::{CompetitorState, DriftState, GroupDriftState, NextCompetitorMove};
 
 const MAX_LISTED_MOVES: usize = 10;
 
-/// Describes the improvements that competitors have not copied yet, their past moves, and their next move.
+/// Describes the improvements that competitors have not copied yet, the past moves of competitors, and their next move.
 pub fn describe_competitors(competitor_state: &CompetitorState) -> Vec<String> {
     let CompetitorState { day, shared_bonus, shared_bank, common_expectation: everyone, .. } =
         competitor_state;
@@ -85,7 +85,8 @@ fn next_move_lines(next: &NextCompetitorMove, competitor_state: &CompetitorState
     lines
 }
 
-/// Describes how much competitors and drift have added to expectations and budgets, and how much the next drift adds.
+/// Describes how much competitors and drift have added to expectations and budgets, and how much the next drift will
+/// add.
 pub fn describe_drift(drift_state: &DriftState) -> Vec<String> {
     let DriftState { day, common_expectation: everyone, next_common_step: step, next_day, groups } =
         drift_state;

@@ -1,4 +1,4 @@
-//! Text for inspections of hidden state, shared by plain mode and the console.
+//! Texts for inspections of hidden state, which plain mode and the console share.
 
 mod breakpoints;
 mod command;
@@ -37,7 +37,7 @@ use crate::formatting::pluralize;
 /// Prefix of the line that describes the last days of a group.
 pub const RECENT_DAYS_PREFIX: &str = "  end of day, last";
 
-/// Describes the range of a figure over the last days. Returns `None` if there are no values.
+/// Describes the range of a figure over the last days. Returns `None` if the figure has no values.
 fn describe_recent_days(values: impl Iterator<Item = f64> + Clone) -> Option<String> {
     let days = values.clone().count();
     let (least, most) =

@@ -2,7 +2,7 @@
 
 use novamind_base::formatting::grouped_number;
 
-/// Number of digits before the decimal point from which a number is written in powers of ten.
+/// Minimum number of digits before the decimal point of a number that is written in powers of ten.
 const MIN_SCIENTIFIC_DIGITS: usize = 16;
 
 /// Normalizes the numbers in lines of text.
@@ -12,7 +12,7 @@ pub fn clean_up_numbers(lines: Vec<String>) -> Vec<String> {
 
 /// Normalizes the numbers in a line: removes the minus sign of zeros, and writes numbers above 1e15 in powers of ten.
 pub fn clean_up_line(text: &str) -> String {
-    let mut settled = String::with_capacity(text.len());
+    let mut cleaned = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(at) = rest.find(|letter: char| letter.is_ascii_digit()) {
         let (before, number) = rest.split_at(at);
@@ -21,29 +21,29 @@ pub fn clean_up_line(text: &str) -> String {
             .unwrap_or(number.len());
         let (number, behind) = number.split_at(end);
         let number_alone = number.trim_end_matches(['.', ',']);
-        settled.push_str(before);
-        let mut letters = settled.chars().rev();
+        cleaned.push_str(before);
+        let mut letters = cleaned.chars().rev();
         let (last, before_last) = (letters.next(), letters.next());
         let is_word = last.is_some_and(char::is_alphanumeric);
         let has_sign = last == Some('-') && before_last.is_none_or(|letter| !letter.is_alphanumeric());
         let is_zero = number_alone.chars().all(|letter| matches!(letter, '0' | '.'));
         let has_exponent = behind.starts_with(['e', 'E']);
         if is_zero && has_sign && !has_exponent {
-            settled.pop();
+            cleaned.pop();
         }
         match to_scientific(number_alone).filter(|_| !is_word && !has_exponent) {
             Some(short) => {
-                settled.push_str(&short);
-                settled.push_str(&number[number_alone.len()..]);
+                cleaned.push_str(&short);
+                cleaned.push_str(&number[number_alone.len()..]);
             }
-            None => settled.push_str(number),
+            None => cleaned.push_str(number),
         }
         rest = behind;
     }
-    settled + rest
+    cleaned + rest
 }
 
-/// Writes a number in powers of ten if the number has too many digits before the decimal point.
+/// Returns the number in powers of ten, or `None` if it is too short for this notation.
 fn to_scientific(number: &str) -> Option<String> {
     let plain = number.replace(',', "");
     let digits = plain.split('.').next().map_or(0, str::len);

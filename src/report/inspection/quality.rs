@@ -1,10 +1,10 @@
-//! Text for the quality that each plan delivers to a group.
+//! Texts for the quality that each plan delivers to a group.
 
 use super::{clean_up_numbers, indented_table};
 use novamind_insight::{DeliveredPlanQuality, QualityEquation, SharedQualityGains};
 use novamind_session::identifiers::Plan;
 
-/// Describes the quality equation of each plan, the sources of shared quality, and the expectations of the market.
+/// Describes the quality equation of each plan, what has added to shared quality, and the expectations of the market.
 pub fn describe_quality(quality_equation: &QualityEquation) -> Vec<String> {
     let QualityEquation { group, day, base, shared, group_gain: targeted, service_penalty, .. } =
         quality_equation;

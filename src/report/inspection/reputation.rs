@@ -1,12 +1,12 @@
-//! Text for the causes of a reputation change.
+//! Texts for the causes of a reputation change.
 
 use super::{clean_up_numbers, describe_recent_days, indented_table};
 use novamind_insight::{CancellationEffect, ChangeThresholds, ReputationEquation, SubscriberContribution};
 use novamind_session::SpilloverEffect;
 use novamind_session::identifiers::Group;
 
-/// Describes how the reputation of a group changed on a day: its value before, every applied term, its value
-/// after, and dropped terms.
+/// Describes how the reputation of a group changed on a day: the value before, every applied term, the value after, and
+/// the dropped terms.
 pub fn describe_reputation(reputation_equation: &ReputationEquation) -> Vec<String> {
     let ReputationEquation { group, day, before, after, thresholds: least, .. } = reputation_equation;
     let plain = |name: &str, value: f64| vec![name.to_owned(), format!("{value:.8}")];
@@ -19,7 +19,7 @@ pub fn describe_reputation(reputation_equation: &ReputationEquation) -> Vec<Stri
     ));
     let counted = reputation_equation.spillovers.iter().filter(|spill| spill.counts);
     rows.extend(counted.map(|spill| term_row(&spillover_product(spill), spill.change)));
-    // A smaller difference is a rounding error and not the effect of a limit.
+    // A smaller difference is a rounding error and does not show that a limit applied.
     if reputation_equation.bounds.abs() > 1e-12 {
         rows.push(term_row("limits", reputation_equation.bounds));
     }
@@ -71,7 +71,7 @@ pub(super) fn format_small(value: f64) -> String {
     format!("{value}")
 }
 
-/// Lists dropped spillovers, with a line for each source group.
+/// Lists dropped spillovers, one line per source group.
 pub(super) fn describe_dropped_spillovers(
     dropped: &[&SpilloverEffect],
     least: &ChangeThresholds,

@@ -1,10 +1,10 @@
-//! Text for the causes of a change in satisfaction.
+//! Texts for the causes of a change in satisfaction.
 
 use super::{clean_up_numbers, describe_recent_days, indented_table};
 use novamind_insight::{SatisfactionEquation, SatisfactionTerm};
 
-/// Describes the mean satisfaction of a group on a day: its value before, each term, its value after the
-/// update, and its value at the end of the day.
+/// Describes the mean satisfaction of a group on a day: the value before, each term, the value after the update, and
+/// the value at the end of the day.
 pub fn describe_satisfaction(satisfaction_equation: &SatisfactionEquation) -> Vec<String> {
     let SatisfactionEquation { group, day, weight, departed: left, joined, subscribers, .. } =
         *satisfaction_equation;

@@ -1,4 +1,4 @@
-//! Text for spillover of reputation between groups: a heat map and a table.
+//! Texts for the spillover of reputation between groups: a heat map and a table.
 
 use super::reputation::{describe_dropped_spillovers, format_small};
 use super::{clean_up_numbers, indented_table};
@@ -14,11 +14,11 @@ pub const HEAT_MARKS: [&str; 4] = ["░", "▒", "▓", "█"];
 pub struct SpilloverMap {
     /// Heading of the map, with the day.
     pub heading: String,
-    /// Target groups, one for each column.
+    /// Target groups, one per column.
     pub targets: Vec<Group>,
-    /// Rows of the map, one for each source group.
+    /// Rows of the map, one per source group.
     pub rows: Vec<SpilloverRow>,
-    /// Notes below the map, for example on dropped changes.
+    /// Notes below the map, such as those on dropped changes.
     pub notes: Vec<String>,
 }
 
@@ -27,9 +27,9 @@ pub struct SpilloverMap {
 pub struct SpilloverRow {
     /// Group whose reputation change spreads to other groups.
     pub from: Group,
-    /// Change of the source group's own reputation.
+    /// Change of the source group's reputation that does not come from other groups, as text.
     pub own_change: String,
-    /// Effect on each target group.
+    /// Effects on the target groups, in the order of the columns.
     pub cells: Vec<SpilloverCell>,
 }
 
@@ -38,7 +38,7 @@ pub struct SpilloverRow {
 pub enum SpilloverCell {
     /// The source group has no influence on the target group.
     NoWeight,
-    /// The effect was too small and was dropped.
+    /// The effect was below the threshold and was dropped.
     Dropped,
     /// Change of the target group's reputation, and the index of its mark in [`HEAT_MARKS`].
     Applied(f64, usize),

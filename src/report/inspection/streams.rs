@@ -1,4 +1,4 @@
-//! Text for the next random draws of a part of the simulator.
+//! Texts for the next random draws of a part of the simulator.
 
 use super::{clean_up_numbers, indented_table};
 use crate::formatting::pluralize;
@@ -7,7 +7,8 @@ use novamind_insight::{DrawEffect, KeyedDraws, NextDraws};
 const MAX_ROW_DRAWS: usize = 8;
 const MAX_LISTED_CUSTOMERS: usize = 12;
 
-/// Lists the random streams of the next day, the first draws of each stream, and the results of the draws.
+/// Lists the random streams that a part of the simulator uses on the next day, the first draws of each stream, and the
+/// results of these draws.
 pub fn describe_next_draws(next_draws: &NextDraws) -> Vec<String> {
     let NextDraws { part, day, streams, .. } = next_draws;
     let over = if next_draws.is_over { "; the run has ended, so this day is not simulated" } else { "" };

@@ -1,4 +1,4 @@
-//! Text for the writes to a figure on a day.
+//! Texts for the writes to a figure on a day.
 
 use super::{clean_up_numbers, indented_table};
 use crate::formatting::{category_name, format_whole, pluralize};
@@ -25,7 +25,7 @@ pub fn describe_writes(figure_writes: &FigureWrites) -> Vec<String> {
     clean_up_numbers(lines)
 }
 
-/// Returns the name of the source of a write: `churn (17)`, `spillover from S1`, `payments`.
+/// Returns the name of the source of a write, such as `churn (17)`, `spillover from S1` or `payments`.
 pub fn describe_source(write: &FigureWrite) -> String {
     let count = format_whole(write.changes.len() as f64);
     match write.source {

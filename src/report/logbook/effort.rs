@@ -1,4 +1,4 @@
-//! Counts a player's actions between two simulated weeks.
+//! Counts what a player did between two simulated weeks.
 
 use std::collections::BTreeMap;
 
@@ -13,17 +13,17 @@ pub struct PlayerEffort {
     /// Time by class, such as active, idle and away.
     #[serde(flatten)]
     pub time: TimeSpent,
-    /// Number of breaks: gaps of more than ten minutes in play.
+    /// Number of gaps of more than ten minutes in play.
     pub breaks: u32,
     /// Number of accepted tool calls.
     pub calls: u32,
     /// Number of rejected tool calls.
     pub refused: u32,
-    /// Number of tool calls that undid an earlier call.
+    /// Number of earlier tool calls that the player undid.
     pub undone: u32,
     /// Number of accepted calls by tool.
     pub tools: BTreeMap<String, u32>,
-    /// Number of SQL queries.
+    /// Number of SQL queries, including failed ones.
     pub queries: u32,
     /// Number of SQL queries that were rejected or failed.
     pub queries_failed: u32,
@@ -40,7 +40,7 @@ pub struct PlayerEffort {
     pub dialogs_cancelled: u32,
     /// Number of explanations of terms that were opened.
     pub helps: u32,
-    /// Number of texts that were edited and not submitted.
+    /// Number of texts that the player edited but did not submit.
     pub drafts_left: u32,
     /// Number of characters typed into texts.
     pub typed: u64,
@@ -48,7 +48,7 @@ pub struct PlayerEffort {
     pub deleted: u64,
     /// Number of characters pasted into texts.
     pub pasted: u64,
-    /// Number of changes to the notes.
+    /// Number of times that the player saved the notes.
     pub memos: u32,
 }
 

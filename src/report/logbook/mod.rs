@@ -1,7 +1,7 @@
 //! Logbook of a run for researchers: times, screens, queries and tool calls by week.
 //!
-//! The logbook is derived from the lines of the trajectory and from the replayed run. Only [`BehaviorMeasures::truly_best`]
-//! uses hidden state, and only for finished runs.
+//! The logbook is derived from the lines of the trajectory and from the replayed run. Only
+//! [`BehaviorMeasures::truly_best`] uses hidden state, and only for finished runs.
 
 mod effort;
 mod summary;
@@ -28,7 +28,7 @@ use novamind_session::{
 };
 use timeline::{Timeline, WeekSpan};
 
-/// Log of a run, with the player's actions.
+/// Log of a run and of the player's actions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Logbook {
     /// ID of the run.
@@ -43,73 +43,73 @@ pub struct Logbook {
     pub scenario: String,
     /// Seed of the run.
     pub seed: u64,
-    /// Planned last day of the run.
+    /// Last day that was planned when the run was created.
     pub days: u32,
     /// Rule that derived the last day.
     pub horizon_rule: HorizonRule,
-    /// Generation of the released simulator whose rules the run has.
+    /// Generation of the released simulator whose rules apply to the run.
     pub generation: Generation,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
-    /// Format version of the trajectory.
+    /// Format version of the trajectory file.
     pub format: u32,
-    /// Stamp of the study to which the run belongs; `None` if the run belongs to no study.
+    /// Study to which the run belongs, if any.
     pub study: Option<StudyStamp>,
     /// Version of the program that recorded the run.
     pub version: String,
-    /// Digest of the effective parameters.
+    /// Digest of the parameters in force, after scenario and overrides.
     pub parameters_digest: String,
-    /// Whether the parameters differ, or differed on some days, from the bundled scenario of the same name.
+    /// Whether the parameters differ from the bundled scenario of the same name, or did on some days.
     pub has_own_parameters: bool,
-    /// The language model that was used as voice; `None` for the built-in voice.
+    /// The language model that served as voice; `None` for the built-in voice.
     pub voice: Option<RecordedModelSettings>,
-    /// Number of earlier runs with the same seed and scenario on the machine.
+    /// Number of earlier runs with the same seed and scenario in the same runs folder.
     pub earlier_runs: u32,
     /// ID of the parent run, if the run is a branch.
     pub parent: Option<String>,
-    /// Name of the policy that decided all weeks; `None` if no single policy decided all weeks.
+    /// Name of the policy that decided all weeks; `None` if not all weeks were decided by one policy.
     pub policy: Option<String>,
     /// Time at which the run was created, RFC 3339.
     pub created: String,
     /// Time of the last line of the trajectory, RFC 3339.
     pub last_at: String,
-    /// Time at which the run ended, RFC 3339.
+    /// Time at which the run ended, RFC 3339; `None` if it is unfinished.
     pub ended_at: Option<String>,
-    /// Reason why the run ended.
+    /// Reason why the run ended; `None` if it is unfinished.
     pub ended: Option<RunEndReason>,
-    /// Last simulated day of the run.
+    /// Last day that was simulated.
     pub day: u32,
     /// Cash after the last simulated day, dollars.
     pub cash: f64,
-    /// Final score of the run, dollars.
+    /// Final score of the run, dollars; `None` if it is unfinished or has no score.
     pub score: Option<f64>,
-    /// Simulated weeks with the actions before each week.
+    /// Simulated weeks, each with the actions before it.
     pub weeks: Vec<WeekRecord>,
     /// Actions after the last simulated week.
     pub open_week: PlayerEffort,
-    /// Breaks: gaps of more than ten minutes in play.
+    /// Gaps of more than ten minutes in play.
     pub breaks: Vec<PlayBreak>,
     /// Number of times that the system clock was set back during the run.
     pub clock_set_back: u32,
     /// Number of times that the run was opened, as counted in its lines.
     pub sittings: SessionCount,
-    /// Summary of the player's notes.
+    /// Versions of the player's notes, and words of the last version.
     pub notes: NotesSummary,
     /// Number of weeks that the player decided in less than ten active seconds.
     pub fast_weeks: u32,
-    /// Sums of all counts and durations over the whole run.
+    /// Counts and durations of the whole run.
     pub total: PlayerEffort,
     /// Median active time before a week, seconds; `None` before the first week.
     pub median_week_seconds: Option<f64>,
     /// Time from the end of the run to the last line that was recorded after it; `None` before the end.
     pub after_end: Option<TimeSpent>,
-    /// Word counts of all rationales.
+    /// Word counts over all rationales.
     pub wording: WordCounts,
     /// Behavior measures of the run.
     pub measures: BehaviorMeasures,
     /// Advertising results by group and channel.
     pub ads: Vec<ChannelRow>,
-    /// State hash after the last week.
+    /// State hash after the last week; `None` before the first week.
     pub state_hash: Option<String>,
     /// Number of the last line of the trajectory.
     pub last_seq: u64,
@@ -126,7 +126,7 @@ pub struct NotesSummary {
     pub wording: Option<WordCounts>,
 }
 
-/// A simulated week, or days that were simulated one by one, with the actions before them.
+/// A simulated week, or days that were simulated one by one, with the actions before it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WeekRecord {
     /// Number of the week, from 1.
@@ -137,11 +137,11 @@ pub struct WeekRecord {
     pub day: u32,
     /// Number of days that were simulated in the week.
     pub days_run: u32,
-    /// Whether the week was copied from the parent run instead of being played in this run.
+    /// Whether the week was copied from the parent run, so that it was not played in this run.
     pub inherited: bool,
-    /// Whether the week was decided in this run in less than ten active seconds.
+    /// Whether the week was decided in this run, in less than ten active seconds.
     pub implausibly_fast: bool,
-    /// Time at which the player could start to decide, RFC 3339.
+    /// Earliest time at which the player could decide, RFC 3339.
     pub began_at: String,
     /// Time at which the decisions were submitted, RFC 3339.
     pub decided_at: String,
@@ -152,9 +152,9 @@ pub struct WeekRecord {
     pub wording: WordCounts,
     /// Descriptions of the decisions before the week.
     pub decisions: Vec<String>,
-    /// Forecasts that were filed before the week.
+    /// Forecasts that the player filed before the week, with their scores if they are due.
     pub forecasts: Vec<ScoredForecast>,
-    /// Whether each forecast is naive, in the order of `forecasts`.
+    /// For each of `forecasts`, whether it is naive.
     pub naive_forecasts: Vec<bool>,
     /// Whether at least one forecast is naive; `None` if no forecast was filed.
     pub filled_naively: Option<bool>,
@@ -173,8 +173,8 @@ impl Logbook {
         self.participant.clone().or_else(policy)
     }
 
-    /// Builds the logbook from the lines of a run, the lines recorded after its end, and the replayed session.
-    /// Queries the database for advertising results.
+    /// Builds the logbook from the lines of a run, the lines that were recorded after its end, and the replayed
+    /// session. Queries the database for advertising results.
     pub fn new(session: &Session, lines: &[Line], afterwards: &[Line]) -> Logbook {
         let timeline = Timeline::from_lines(lines);
         let weeks: Vec<WeekRecord> =
@@ -283,7 +283,7 @@ fn week_record(session: &Session, span: &WeekSpan, at: usize) -> WeekRecord {
     }
 }
 
-/// Returns the time from the last line of a run to the last line that was recorded after its end.
+/// Returns the time between the last line of a run and the last line that was recorded after its end.
 fn time_after_end(lines: &[Line], afterwards: &[Line]) -> TimeSpent {
     let mut attendance = Attendance::from_lines(lines);
     let end = attendance.end_ns();

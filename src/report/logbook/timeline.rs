@@ -11,7 +11,7 @@ use novamind_record::trajectory::record::{
 use novamind_record::trajectory::{Line, Record};
 use novamind_session::{Attendance, AttendedWeek, MIN_BREAK_SECONDS, TimeUse};
 
-/// A break: a gap of more than ten minutes in play.
+/// A gap of more than ten minutes in play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlayBreak {
     /// Day of the run on which the break occurred.
@@ -34,7 +34,8 @@ pub(super) struct WeekSpan {
     pub effort: PlayerEffort,
     pub rationale: Option<String>,
     pub forecasts: Vec<SubmittedForecast>,
-    /// Whether the week was filed automatically because a time limit was reached. The rationale is then not the player's.
+    /// Whether the week was filed automatically because a time limit was reached, so that the rationale is not the
+    /// player's.
     pub filed_at_limit: bool,
     pub figures: Map<String, Value>,
     pub state_hash: String,
@@ -73,8 +74,7 @@ impl Timeline {
             before = Some(line);
         }
         timeline.clock_set_back = attendance.clock_set_back_count();
-        // The start of an idle period is known only from a later line, so times can be classified only after
-        // all lines are read.
+        // Only a later line shows when an idle period started, so times are classified after all lines are read.
         let last =
             AttendedWeek { from: attendance.week_start_ns(), to: attendance.end_ns(), is_inherited: false };
         let spans = timeline.spans.iter_mut().chain([&mut timeline.open]);
@@ -89,7 +89,7 @@ impl Timeline {
         timeline
     }
 
-    /// Records breaks: gaps of more than ten minutes in play. A break belongs to the week in which it ended.
+    /// Records gaps of more than ten minutes in play. A break belongs to the week in which it ended.
     fn add_breaks(&mut self, attendance: &Attendance, lines: &[Line], places: &[i64]) {
         let mut merged_intervals: Vec<(i64, i64)> = Vec::new();
         for time in attendance.spans() {
@@ -118,8 +118,8 @@ impl Timeline {
         }
     }
 
-    /// Distributes the active time of a screen view over the weeks that the view overlaps. The view ends when its line
-    /// is written.
+    /// Distributes the active time of a screen view over the weeks that the view overlaps. The line of a view is
+    /// written when the view ends.
     fn distribute_view_time(&mut self, week: usize, place: i64, view: &ScreenView, attendance: &Attendance) {
         let length = i64::try_from(view.for_ms).unwrap_or(i64::MAX).saturating_mul(1_000_000);
         let began = place.saturating_sub(length).max(0);

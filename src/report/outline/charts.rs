@@ -15,7 +15,7 @@ pub fn cash_chart(report: &RunReport) -> Option<Block> {
     if points.len() < 2 {
         return None;
     }
-    // Cash on day 0 is lower than the starting cash if there were purchases on day 0. The range includes both values.
+    // Purchases on day 0 reduce the cash of this day below the starting cash. The range includes both values.
     let low = report.cash_by_day.iter().copied().fold(report.start_cash, f64::min);
     let high = report.cash_by_day.iter().copied().fold(report.start_cash, f64::max);
     let mut curves = vec![Curve { name: "cash".to_owned(), points }];
@@ -43,8 +43,8 @@ pub fn cash_chart(report: &RunReport) -> Option<Block> {
     }))
 }
 
-/// Returns the intervals of the open forecasts as a fan that starts at today's cash, and the predicted values. Returns
-/// `None` after the end of the run.
+/// Returns the intervals of the forecasts that are not due yet, as a fan that starts at today's cash, and the predicted
+/// values. Returns `None` if the run has ended.
 fn pending_forecast_fan(report: &RunReport) -> Option<(Band, Curve)> {
     let filed_last = report.forecasts.last().filter(|_| report.observation.ended.is_none())?.day;
     let (day, cash) = (f64::from(report.observation.day), report.observation.cash);
@@ -152,7 +152,7 @@ pub fn group_chart(report: &RunReport) -> Option<Block> {
         .collect();
     largest.sort_by(|left, right| weight(&right.active).total_cmp(&weight(&left.active)));
     largest.truncate(MAX_GROUPS);
-    // Omits groups that are too small to be visible in the chart.
+    // Omit groups that are too small to be visible in the chart.
     let max = largest.first().map_or(0.0, |book| weight(&book.active));
     largest.retain(|book| weight(&book.active) >= 0.01 * max);
     if largest.len() < 2 {
@@ -204,7 +204,7 @@ fn forecast_chart(report: &RunReport, horizon: u32) -> Option<Block> {
         due.len(),
         inside.count()
     );
-    // The limits of the axis follow the actual values, because outliers among forecasts would flatten the curve.
+    // The limits of the axis follow the outcomes, because outliers among the forecasts would flatten the curve.
     let low = actual.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
     let high = actual.iter().map(|point| point.1).fold(f64::NEG_INFINITY, f64::max);
     let reach = (high - low).max(0.1 * high.abs()).max(1.0);

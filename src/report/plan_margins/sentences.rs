@@ -1,5 +1,5 @@
-//! Gross margins in sentences for screen readers. The current model tier is described first. The other tiers follow in
-//! one line.
+//! Gross margins in sentences, for screen readers. For each plan, the current model tier comes first, and one line
+//! describes the other tiers.
 
 use super::{
     DraftPlanTerms, MarginSetting, NO_USAGE_MESSAGE, PlanSales, PlanUsage, differs_by_a_cent, margin,
@@ -95,7 +95,7 @@ fn group_sentence(sales: &PlanSales, plan: Plan, unit_cost: Option<f64>) -> Opti
     })
 }
 
-/// Lists the profitable tiers one by one, and combines the tiers that make a loss.
+/// Lists the margins of profitable tiers one by one, and combines the tiers that make a loss.
 fn other_models_sentence(margins: &[(u8, f64)]) -> Option<String> {
     let (earns, loses): (Vec<_>, Vec<_>) = margins.iter().partition(|(_, margin)| *margin >= 0.0);
     let mut parts: Vec<String> =
@@ -109,7 +109,7 @@ fn other_models_sentence(margins: &[(u8, f64)]) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(", "))
 }
 
-/// Describes a positive margin as a share of the price, and a loss as the ratio of compute cost to the price.
+/// Describes a positive margin as a share of the price, and a loss as the ratio of the compute cost to the price.
 fn describe_margin(margin: Option<f64>, of: &str) -> String {
     match margin {
         None => format!("an unknown share of {of}"),

@@ -17,7 +17,7 @@ impl ShownQuestion<'_> {
     }
 }
 
-/// Returns the columns of `answers.csv`. The location columns describe the line of the question.
+/// Returns the columns of `answers.csv`. The location columns describe the line that shows the question.
 pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, ShownQuestion<'a>>>> {
     with_location_columns(columns! { row: LineRow<'a, ShownQuestion<'a>>;
         "questionnaire", "name", "name of the questionnaire" => row.row.asked.questionnaire;
@@ -37,7 +37,7 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, ShownQuestion<'a>>>> {
     })
 }
 
-/// Returns the rows of a run: each question with the answer in a later line.
+/// Returns the rows of a run: each question, with the answer from a later line if there is one.
 pub(super) fn rows<'a>(lines: &'a [LocatedLine<'a>]) -> impl Iterator<Item = LineRow<'a, ShownQuestion<'a>>> {
     lines.iter().enumerate().filter_map(|(at, placed)| {
         let Record::Activity(Activity::Question(question_shown)) = &placed.line.record else { return None };
@@ -45,7 +45,7 @@ pub(super) fn rows<'a>(lines: &'a [LocatedLine<'a>]) -> impl Iterator<Item = Lin
             Record::Activity(Activity::Answer(answer)) if is_answer_to(answer, question_shown) => {
                 Some(Some((later, answer)))
             }
-            // If a question is shown again before the participant answers, the answer belongs to the later line.
+            // If a question is shown again before it is answered, the answer belongs to the later line.
             Record::Activity(Activity::Question(again))
                 if again.id == question_shown.id && is_same_question(again, question_shown) =>
             {

@@ -1,4 +1,5 @@
-//! Columns of tables. Each column is declared once. Headers, rows and the codebook are derived from the declaration.
+//! Columns of tables. Each column is declared once, and headers, rows and the codebook are derived from this
+//! declaration.
 
 use std::borrow::Cow;
 
@@ -9,9 +10,9 @@ use serde::Serialize;
 pub struct ColumnHeading {
     /// Name of the column in the header line.
     pub name: Cow<'static, str>,
-    /// Unit or kind of the values.
+    /// Unit of the values or, if they have none, their kind.
     pub unit: &'static str,
-    /// Meaning of the values.
+    /// What the values mean, for the codebook.
     pub meaning: &'static str,
 }
 
@@ -22,7 +23,7 @@ pub(crate) struct Column<Row> {
 }
 
 impl<Row> Column<Row> {
-    /// Creates a column. `cell` returns the cell of a row.
+    /// Creates a column. `cell` formats the value of a row.
     pub fn new(
         name: impl Into<Cow<'static, str>>,
         unit: &'static str,

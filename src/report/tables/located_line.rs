@@ -1,4 +1,4 @@
-//! Location of a line in a study: run, time, week, and position relative to the end of the run.
+//! Location of a line in a study: run, time, week, and whether it follows the end of the run.
 
 use super::column::{Column, columns};
 use super::rounded;
@@ -15,13 +15,13 @@ pub(super) struct LocatedLine<'a> {
     seconds: f64,
 }
 
-/// A table row about a line: the line with its location, and the values of the table's own columns.
+/// A table row about a line: the line with its location, and the values for the table's own columns.
 pub(super) struct LineRow<'a, T> {
     pub located: &'a LocatedLine<'a>,
     pub row: T,
 }
 
-/// Prepends the location columns, which all tables about lines share.
+/// Prepends the location columns, which all tables about lines have.
 pub(super) fn with_location_columns<'a, T>(
     row_columns: Vec<Column<LineRow<'a, T>>>,
 ) -> Vec<Column<LineRow<'a, T>>> {

@@ -27,13 +27,13 @@ use novamind_study::FoundVisit;
 
 pub use column::ColumnHeading;
 
-/// Returns a value that only the console records, or `None` for a run that was never open in the console.
+/// Returns a value that only the console records, or `None` if the run was never open in the console.
 fn console_only<T>(run: &Logbook, value: T) -> Option<T> {
     (run.sittings.in_console > 0).then_some(value)
 }
 
-/// Returns a value about screen views. Returns `None` for a run whose lines contain sessions but no console session.
-/// Old versions of the console recorded screen views but no sessions.
+/// Returns a value about screen views, or `None` if the lines of the run contain sessions but no console session. Old
+/// versions of the console recorded screen views but no sessions.
 fn screen_views_only_if_recorded<T>(run: &Logbook, value: T) -> Option<T> {
     if run.sittings.opened == 0 { Some(value) } else { console_only(run, value) }
 }
@@ -71,7 +71,7 @@ pub fn column_descriptions() -> Vec<Vec<String>> {
 /// The tables of a study, to which runs are added one by one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyTables {
-    // Rows of each table, starting with the header.
+    // For each table, its rows, starting with the header.
     tables: Vec<(&'static str, Vec<Vec<String>>)>,
 }
 
@@ -86,7 +86,7 @@ impl Default for StudyTables {
 }
 
 impl StudyTables {
-    /// Adds a run from its logbook, its lines, and the lines recorded after its end.
+    /// Adds a run: its logbook, its lines, and the lines that were recorded after its end.
     pub fn add(&mut self, book: &Logbook, lines: &[Line], afterwards: &[Line]) {
         let lines = located_line::locate_lines(book, lines, afterwards);
         self.append_rows("runs", &runs::columns(), [book]);
@@ -102,12 +102,12 @@ impl StudyTables {
         self.append_rows("notes", &notes::columns(), notes::rows(&lines));
     }
 
-    /// Adds visits, which are the lines of visit lists.
+    /// Adds visits, which are the lines of the visit lists.
     pub fn add_visits(&mut self, visits: &[FoundVisit]) {
         self.append_rows("visits", &visits::columns(), visits);
     }
 
-    /// Adds a row for a run that could not be read. The row contains only the run's name and the problem.
+    /// Adds a row for a run that cannot be read. The row contains only the name of the run and the problem.
     pub fn add_unreadable_run(&mut self, run: &str, problem: &str) {
         let cell = |column: Column<Logbook>| match &*column.heading.name {
             "run" => run.to_owned(),
@@ -117,7 +117,7 @@ impl StudyTables {
         self.extend("runs", [runs::columns().into_iter().map(cell).collect()]);
     }
 
-    /// Returns the name and the rows of every table, starting with the header. The last table describes the columns.
+    /// Returns the name and the rows of every table. The first row is the header. The last table describes the columns.
     pub fn into_files(self) -> Vec<(&'static str, Vec<Vec<String>>)> {
         let mut files = self.tables;
         files.push(("columns", column_descriptions()));

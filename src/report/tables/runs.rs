@@ -27,7 +27,7 @@ fn first_weeks_error(run: &Logbook, horizon_days: u32) -> Option<f64> {
     score_at_horizon(&run.measures.first_forecasts, horizon_days).map(|score| score.mean_error)
 }
 
-/// Returns how consent was given, or `None` if the program did not show the consent text.
+/// Returns how the participant gave consent, or `None` if the program did not show the consent text.
 fn consent_on_screen(run: &Logbook) -> Option<ConsentDetails> {
     run.consent
         .as_ref()

@@ -1,4 +1,4 @@
-//! `visits.csv`: a row for each line of the lists of visits, including the lines of visitors who have no run.
+//! `visits.csv`: a row for each line of the visit lists, including visitors without a run.
 
 use super::column::{Column, columns};
 use super::serialized_name;

@@ -1,4 +1,4 @@
-//! Export to the Agent Trajectory Interchange Format, version 1.8: one step for each action.
+//! Export to the Agent Trajectory Interchange Format, version 1.8, with one step per action.
 
 use serde_json::{Map, Value, json};
 
@@ -32,7 +32,7 @@ pub fn to_atif(run: &Transcript, agent_context: &AgentContext) -> Value {
     })
 }
 
-/// Returns the step of an action, or `None` for an action that no interface for programs offers.
+/// Returns the step of an action, or `None` if no interface for programs offers the action.
 fn step_json(act: &TranscriptStep) -> Option<Value> {
     let id = format!("line-{}", act.seq);
     let called = |name: &str, args: &Value, content: String, extra: &Map<String, Value>| {
@@ -100,7 +100,7 @@ fn describe_week(passed: Option<&WeekResult>) -> String {
     }
 }
 
-/// Wraps arguments that are not an object. The format requires an object, even for rejected calls.
+/// Wraps arguments that are not an object, because the format requires an object even for rejected calls.
 fn as_object(args: &Value) -> Value {
     match args {
         Value::Object(_) => args.clone(),

@@ -1,11 +1,11 @@
-//! Metadata of actions: interface, duration, and the calls that they undid.
+//! Metadata of actions: interface, duration, and the call that an action undid.
 
 use serde_json::{Map, Value, json};
 
 use novamind_record::trajectory::Line;
 use novamind_record::trajectory::record::{QuerySource, Reversal, Via};
 
-/// Information that the player receives before the first action.
+/// What a player knows before the first action.
 #[derive(Debug, Clone, Default)]
 pub struct AgentContext {
     /// Goal, rules and available calls as text.

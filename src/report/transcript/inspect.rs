@@ -1,4 +1,4 @@
-//! Export to an evaluation log of Inspect, version 2: one sample whose messages are the steps of the run.
+//! Export to an evaluation log of Inspect, version 2. The log has one sample, whose messages are the steps of the run.
 
 use serde_json::{Value, json};
 use time::OffsetDateTime;
@@ -14,7 +14,8 @@ const VERSION: u32 = 2;
 const TASK: &str = "novamind";
 const SCORER: &str = "cash";
 
-/// Returns the file name of a run's log in the naming scheme of Inspect. Inspect does not list JSON logs with other names.
+/// Returns the file name of a run's log in the naming scheme of Inspect, because Inspect does not list JSON logs with
+/// other names.
 pub fn inspect_file_name(manifest: &Manifest) -> String {
     // Start time in UTC, without fractional seconds.
     let created = manifest.created.get(..19).unwrap_or(&manifest.created).replace(':', "-");
@@ -83,8 +84,7 @@ fn run_status(run: &Transcript) -> &'static str {
     }
 }
 
-/// Returns the score of the sample, or `None` if the run has no score because it is unfinished, abandoned or
-/// part of a lesson.
+/// Returns the score of the sample, or `None` if the run has no score: it is unfinished, abandoned or part of a lesson.
 fn sample_score(run: &Transcript) -> Option<Value> {
     let end = run.end.as_ref()?;
     let explanation = match end.reason {
@@ -113,8 +113,8 @@ struct MessageStep {
 }
 
 impl MessageStep {
-    /// Converts a step of an exported trajectory to messages. Their IDs are unique across runs, because Inspect's
-    /// tables drop duplicates.
+    /// Converts a step of an exported trajectory to messages. Message IDs are unique across runs, because Inspect drops
+    /// duplicates from its tables.
     fn from_json(step: &Value, manifest: &Manifest) -> MessageStep {
         let role = match step["source"].as_str() {
             Some("agent") => "assistant",
@@ -152,9 +152,9 @@ impl MessageStep {
     }
 }
 
-/// Returns the steps as events, from which Inspect builds its message tables. Each step of the player becomes
-/// a model event with the messages since the previous step, and each call becomes a tool event. The last
-/// model event has no output, and its input is the last result.
+/// Returns the steps as events. Inspect builds its message tables from these events. Each step of the player becomes a
+/// model event that contains the messages since the previous step, and each call becomes a tool event. The last model
+/// event has no output, and its input is the last result.
 fn step_events(steps: &[MessageStep], created: &str, model: &str) -> Vec<Value> {
     let mut events = Vec::new();
     let (mut input, mut at) = (Vec::new(), created);

@@ -1,9 +1,8 @@
-//! A run as a sequence of actions, which can be exported to formats of programs that study or train agents
+//! A run as a sequence of actions, for export to formats of programs that study or train agents
 //! (docs/formats/exports.md).
 //!
-//! The run is replayed from its lines to reproduce the rows of every query, because the record does not
-//! contain these rows. The actions contain only data that the player could see. Inspections and timings are
-//! stored separately.
+//! The run is replayed from its lines, because the record does not contain the rows that queries returned. The actions
+//! contain only data that the player could see. Inspections and timings are stored separately.
 
 mod atif;
 mod context;
@@ -39,13 +38,13 @@ use novamind_tools::{FORECAST_KEYS, ParameterNumbers};
 pub struct Transcript {
     /// Manifest of the run.
     pub manifest: Manifest,
-    /// Parameters in force on day 0, as documented in manuals.
+    /// Values of the parameters that manuals document, as in force on day 0.
     pub numbers: ParameterNumbers,
-    /// Dashboard of day 0 as text.
+    /// Text of the dashboard on day 0, before the first action.
     pub opening_dashboard: String,
     /// Actions of the player in order.
     pub steps: Vec<TranscriptStep>,
-    /// Lines that changed nothing, such as inspections, timings and presence.
+    /// Lines that did not change the run, such as inspections, timings and presence.
     pub other_lines: Vec<Value>,
     /// Recorded end of the run; `None` if the run has not ended.
     pub end: Option<End>,
@@ -57,7 +56,7 @@ pub struct Transcript {
     pub policy: Option<String>,
 }
 
-/// An action with its line, day and time.
+/// An action of the player, with its line, day and time.
 #[derive(Debug)]
 pub struct TranscriptStep {
     /// Number of the line that recorded the action.
@@ -66,31 +65,31 @@ pub struct TranscriptStep {
     pub day: u32,
     /// Time of the action, RFC 3339.
     pub at: String,
-    /// The action of the player.
+    /// What the player did.
     pub action: TranscriptAction,
 }
 
 /// An action of the player.
 #[derive(Debug)]
 pub enum TranscriptAction {
-    /// A tool call.
+    /// A tool call, accepted or rejected.
     Call {
-        /// Called tool, which may be unknown to the program.
+        /// Tool that the player called. The program may not have a tool of this name.
         tool: CalledTool,
-        /// Arguments of the call.
+        /// Arguments as recorded.
         args: Value,
         /// Result or rejection of the call.
         answer: Result<Value, RejectionRecord>,
-        /// Metadata of the call: interface and duration.
+        /// Interface and duration of the call.
         extra: Map<String, Value>,
     },
-    /// A database query.
+    /// A database query of the player.
     Query {
-        /// SQL statement of the query.
+        /// SQL as recorded.
         sql: String,
-        /// Rows in the form that programs receive, or error code and message.
+        /// Rows in the form that programs receive, or an error code and a message.
         answer: Result<Value, (String, String)>,
-        /// Metadata of the query: source of the statement and duration.
+        /// Source of the statement and duration of the query.
         extra: Map<String, Value>,
     },
     /// Saved notes; `None` if the record does not contain the text.
@@ -104,12 +103,12 @@ pub enum TranscriptAction {
         /// Result of the week; `None` if the week did not end.
         result: Option<WeekResult>,
     },
-    /// An action that no interface for programs offers: a single day or a changed parameter. The value is the
+    /// An action that no interface for programs offers: simulating a single day, or changing a parameter. Contains the
     /// command.
     Debugging(String),
 }
 
-/// Result of a week.
+/// State of the company after a week.
 #[derive(Debug)]
 pub struct WeekResult {
     /// Last day of the week.
@@ -123,11 +122,11 @@ pub struct WeekResult {
 }
 
 impl Transcript {
-    /// Reads a run folder or a trajectory file and replays it. `progress` is called with each simulated day.
+    /// Reads a run folder or a trajectory file and replays the run. `progress` is called with each simulated day.
     ///
     /// # Errors
-    /// Returns an error if the run is missing, is damaged or has a different version. The error names the damaged line
-    /// and the part that is intact.
+    /// Returns an error if the run is missing, is damaged or has a different version. For a damaged run, the error
+    /// names the damaged line and the intact part.
     pub fn open(path: &Path, progress: &mut dyn FnMut(u32)) -> Result<Transcript, RunError> {
         Transcript::open_observed(path, progress, &mut |_| {})
     }
@@ -217,7 +216,7 @@ impl Transcript {
                 self.end = Some(end.clone());
                 return;
             }
-            // Saved notes contain the final text. Edits are stored with the other lines.
+            // Notes are exported in their final form. Their edits are among the other lines.
             Record::Activity(_) | Record::Voice(_) => {
                 return self.other_lines.push(context::line_as_json(line));
             }
@@ -250,7 +249,7 @@ impl Transcript {
         self.manifest.participant.clone().unwrap_or_else(|| "unnamed player".to_owned())
     }
 
-    /// Returns the definition and the result of the run for the metadata fields of the export formats.
+    /// Returns the definition and the result of the run, for metadata fields of the export formats.
     fn run_facts(&self) -> Map<String, Value> {
         let manifest = &self.manifest;
         let all = json!({

@@ -6,7 +6,7 @@ use super::{Transcript, TranscriptAction, TranscriptStep, forecasts_as_json};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::CalledTool;
 
-/// Returns the plain-mode script. Its first lines contain the command that runs the script.
+/// Returns the plain-mode script. The first lines contain the command for running the script.
 pub fn to_plain_script(run: &Transcript) -> String {
     let manifest = &run.manifest;
     let head = format!(
@@ -18,7 +18,7 @@ pub fn to_plain_script(run: &Transcript) -> String {
         run.last_day_and_cash.0,
         run.state_hash,
         new_run_options(run),
-        // The label must differ from the label of the original participant.
+        // The label must differ from the original participant's label.
         if manifest.mode == Mode::Baseline { " --participant again" } else { "" },
     );
     let head = head + &describe_unreproducible(run).map(|words| format!("# {words}\n")).unwrap_or_default();
@@ -26,7 +26,7 @@ pub fn to_plain_script(run: &Transcript) -> String {
     head + &lines
 }
 
-/// Explains why the script may end in a different state, or returns `None` if it ends in the same state.
+/// Explains why the script may end in a different state. Returns `None` if it ends in the same state.
 pub(super) fn describe_unreproducible(run: &Transcript) -> Option<&'static str> {
     let is_judged = run.manifest.voice.as_ref().is_some_and(|model| model.judge);
     is_judged.then_some(
@@ -34,8 +34,8 @@ pub(super) fn describe_unreproducible(run: &Transcript) -> Option<&'static str> 
     )
 }
 
-/// Formats a rejected call as a one-line comment. Escapes the name of an unknown tool, because the name can contain
-/// any characters.
+/// Formats a rejected call as a one-line comment. Escapes the name of an unknown tool, because it can contain any
+/// characters.
 pub(super) fn rejected_call_comment(tool: &CalledTool, args: &Value, code: &str) -> String {
     let name = tool.tool_id().map_or_else(|| json!(tool.name()).to_string(), |tool| tool.name().to_owned());
     format!("# refused ({code}): {name} {args}")

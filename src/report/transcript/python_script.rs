@@ -1,4 +1,4 @@
-//! Export to a Python program that repeats the decisions of the run on a served run, through the client library.
+//! Export to a Python program that uses the client library to repeat the decisions of the run on a served run.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ use novamind_record::error::RunError;
 /// Returns the run as a Python program.
 ///
 /// # Errors
-/// Returns an error if the run has single days or changed parameters, because no server offers these actions.
+/// Returns an error if the run has single days or changed parameters, because servers do not offer these actions.
 pub fn to_python_script(run: &Transcript) -> Result<String, RunError> {
     let manifest = &run.manifest;
     let mut text = format!(
@@ -58,8 +58,8 @@ fn python_literal(value: &Value) -> String {
         Value::Null => "None".to_owned(),
         Value::Bool(true) => "True".to_owned(),
         Value::Bool(false) => "False".to_owned(),
-        // JSON escapes are valid in Python except for surrogate pairs. The JSON text therefore contains non-ASCII
-        // characters and `/` without escapes.
+        // JSON escapes are valid in Python, except for surrogate pairs. Non-ASCII characters and `/` are therefore not
+        // escaped.
         Value::String(_) | Value::Number(_) => value.to_string(),
         Value::Array(all) => format!("[{}]", in_order(all.iter().map(python_literal).collect())),
         Value::Object(all) => {

@@ -1,4 +1,4 @@
-//! Export to the data folder of the paper's trajectory viewer: a manifest, a file per run, and a file per week.
+//! Export to the data folder of the paper's trajectory viewer: a manifest, one file per run, and one file per week.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,9 +14,9 @@ use novamind_record::trajectory::record::{CalledTool, RunEndReason};
 use novamind_session::identifiers::Group;
 use novamind_session::{Session, week_of_day};
 
-/// Maximum number of lines of an exported result. The viewer shows fewer lines.
+/// Maximum number of lines of an exported result. The viewer shows even fewer.
 const MAX_RESULT_LINES: usize = 200;
-/// Number of digits of the state hash that replace the hash of a commit.
+/// Number of digits of the state hash, which is exported in place of a commit hash.
 const HASH_DIGITS: usize = 10;
 
 const GROUP_SQL: &str = "SELECT c.group_id, count(*), sum(s.seat_count)
@@ -26,9 +26,9 @@ WHERE c.customer_id = s.customer_id AND s.status = 'subscribed' GROUP BY 1";
 /// A run in the format of the viewer.
 #[derive(Debug)]
 pub struct ViewerExport {
-    /// Content of the run's file.
+    /// Content of the file of the run.
     pub run: Value,
-    /// Content of the file of each week, by the number of the week.
+    /// Content of the file of each week, with the number of the week.
     pub weeks: Vec<(u32, Value)>,
     /// Entry of the run in the manifest.
     manifest_entry: Value,
@@ -65,7 +65,7 @@ impl GroupCounts {
     }
 }
 
-/// Actions of the player on a day, with the rationale of the week that began on this day.
+/// Actions of the player on a day, and the rationale of the week that began on this day.
 #[derive(Default)]
 struct ViewerDay {
     rationale: Option<String>,
@@ -109,10 +109,10 @@ pub fn to_viewer(folder: &Path, progress: &mut dyn FnMut(u32)) -> Result<ViewerE
     Ok(ViewerExport { run: summary.into(), weeks: days.weeks, manifest_entry })
 }
 
-/// Returns a manifest with the run added. `manifest` is the text of the existing manifest, if any.
+/// Returns the manifest with the run added. `manifest` is the text of the existing manifest, if any.
 ///
 /// # Errors
-/// Returns an error if the existing manifest is not valid or lists a run with the same id.
+/// Returns an error if the existing manifest is not valid or already lists a run with the same id.
 pub fn add_to_viewer_manifest(manifest: Option<&str>, export: &ViewerExport) -> Result<Value, String> {
     let mut manifest: Value = match manifest {
         Some(text) => {
@@ -148,7 +148,7 @@ fn run_summary(run: &Transcript, id: &str, days: &Days, last: Option<&GroupCount
     let status = match run.end.as_ref().map(|end| end.reason) {
         Some(RunEndReason::Bankruptcy) => "bankrupt",
         Some(RunEndReason::Horizon | RunEndReason::Lesson) => "complete",
-        // The viewer has no other status for a run that did not reach its last day.
+        // The viewer has no other status for runs that did not reach their last day.
         Some(RunEndReason::Abandoned) | None => "dnf",
     };
     // The viewer inserts the label as HTML.
@@ -260,7 +260,7 @@ impl Days {
     }
 }
 
-/// Returns the tool, the arguments and the result of an action; `None` for an action of debug runs.
+/// Returns the tool, the arguments and the result of an action, or `None` for an action that only debug runs have.
 fn describe_action(action: &TranscriptAction) -> Option<(String, Value, String)> {
     let shown = |value: &Value| serde_json::to_string_pretty(value).unwrap_or_default();
     let rejected = |code: &str, message: &str| format!("rejected ({code}): {message}");
@@ -268,7 +268,8 @@ fn describe_action(action: &TranscriptAction) -> Option<(String, Value, String)>
         TranscriptAction::Call { tool, args, answer, .. } => {
             let name = match tool {
                 CalledTool::Known(tool) => tool.name().to_owned(),
-                // The viewer expects certain arguments of tools with the names of its agents' tools.
+                // The prefix distinguishes the tool from the tools of the viewer's agents, for which the viewer expects
+                // certain arguments.
                 CalledTool::Unknown(name) => format!("unknown tool {name}"),
             };
             let result = match answer {
@@ -304,7 +305,7 @@ fn describe_action(action: &TranscriptAction) -> Option<(String, Value, String)>
     })
 }
 
-/// Removes the lines of a result beyond the maximum.
+/// Truncates a result to the maximum number of lines.
 fn shorten(text: &str) -> String {
     let count = text.lines().count();
     if count <= MAX_RESULT_LINES {

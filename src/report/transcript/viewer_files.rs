@@ -1,4 +1,4 @@
-//! The texts of a player as files (notes, stored code and forecasts), with their changes in each week.
+//! The texts of a player as files (notes, stored code and forecasts), and their changes in each week.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use super::{TranscriptAction, TranscriptStep, forecasts_as_json};
 use novamind_session::week_of_day;
 use novamind_tools::ToolId;
 
-/// Number of unchanged lines around the changed lines of a file.
+/// Number of unchanged lines that a diff shows before and after the changed lines.
 const CONTEXT_LINES: usize = 2;
 
-/// The files at the end of the last week, and the current files.
+/// The files as they were at the end of the last week, and as they are now.
 #[derive(Default)]
 pub(super) struct PlayerFiles {
     before: BTreeMap<String, String>,
@@ -19,7 +19,7 @@ pub(super) struct PlayerFiles {
 }
 
 impl PlayerFiles {
-    /// Path of the notes.
+    /// Path under which the viewer shows the notes.
     pub(super) const NOTES: &str = "notes.md";
 
     /// Applies the effect of an action to the files.
@@ -59,7 +59,7 @@ impl PlayerFiles {
         };
     }
 
-    /// Returns the changes since the last call as entries of the viewer, with their total length in bytes.
+    /// Returns the changes since the last call, as entries of the viewer, and their total length in bytes.
     pub(super) fn take_changes(&mut self) -> (Vec<Value>, usize) {
         let paths = self.before.keys().chain(self.now.keys().filter(|path| !self.before.contains_key(*path)));
         let mut size = 0;

@@ -15,8 +15,8 @@ const PACKAGE: &str = include_str!("../../../assets/client/package.py");
 const PROJECT: &str = include_str!("../../../assets/client/pyproject.toml");
 const NOTEBOOK: &str = include_str!("../../../assets/client/twelve-weeks.ipynb");
 
-/// Writes the Python package to a folder, from which `pip install` can install the package. Replaces the
-/// files of an earlier client.
+/// Writes the Python package to a folder, so that `pip install` can install it from there. Replaces the files of an
+/// earlier client.
 ///
 /// # Errors
 /// The folder cannot be written.

@@ -21,7 +21,8 @@ fn class_name(module: ToolModule) -> String {
     name[..1].to_uppercase() + &name[1..]
 }
 
-/// Returns the Python source of a module: a class with a method per tool, and functions that use the default connection.
+/// Returns the Python source of a module: a class with one method per tool, and functions that call the methods on the
+/// default connection.
 pub fn module_source(module: ToolModule, numbers: &ParameterNumbers) -> String {
     let (name, class) = (module_name(module), class_name(module));
     let mut text = format!(

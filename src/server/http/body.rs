@@ -14,11 +14,11 @@ const MAX_BODY_BYTES: usize = 1024 * 1024;
 /// Time limit for the arrival of a request body.
 const BODY_DEADLINE: Duration = Duration::from_secs(30);
 
-/// The fields of a request body.
+/// The fields of a request body, which routes take one by one.
 #[derive(Debug)]
 pub struct BodyFields {
     fields: Map<String, Value>,
-    /// Rejection if the body contains a value that JSON cannot represent, such as `NaN`.
+    /// Rejection if the body contains a literal that JSON does not allow, such as `NaN`.
     pub rejection: Option<Rejection>,
 }
 
@@ -33,7 +33,7 @@ impl BodyFields {
         self.fields.get(name).unwrap_or(&Value::Null)
     }
 
-    /// Returns the remaining fields of the body.
+    /// Returns all fields that were not taken, as one object.
     pub fn into_remaining(self) -> Value {
         self.fields.into()
     }

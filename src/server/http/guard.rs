@@ -13,7 +13,7 @@ use axum::http::header::{AUTHORIZATION, HOST, ORIGIN};
 use crate::request::{ApiResponse, ResponseStatus};
 use novamind_record::error::RunError;
 
-/// Requirements that every request must meet.
+/// Checks that every request must pass.
 #[derive(Debug, Clone)]
 pub struct RequestGuard {
     /// Token that requests must send as `Authorization: Bearer`, if a token is required.
@@ -71,10 +71,10 @@ fn constant_time_eq(given: &str, expected: &str) -> bool {
     blake3::hash(given.as_bytes()) == blake3::hash(expected.as_bytes())
 }
 
-/// Generates a random token.
+/// Generates a random token of 24 bytes.
 ///
 /// # Errors
-/// The system returns no random numbers.
+/// The system cannot generate random numbers.
 pub fn new_token() -> Result<String, RunError> {
     let mut bytes = [0u8; 24];
     getrandom::fill(&mut bytes).map_err(|error| {

@@ -33,11 +33,11 @@ use shutdown::Shutdown;
 
 /// Maximum number of open connections. Additional connections are rejected with status 503.
 const MAX_CONNECTIONS: usize = 64;
-/// Maximum time before a rejected connection is closed.
+/// Time limit for the response to a rejected connection and for closing it.
 const REJECTED_CONNECTION_DEADLINE: Duration = Duration::from_secs(2);
 /// Time limit for the arrival of a request's headers.
 const HEAD_DEADLINE: Duration = Duration::from_secs(10);
-/// Time limit for answering pending requests after a request to stop the server.
+/// Time limit for finishing pending requests while the server shuts down.
 const SHUTDOWN_DEADLINE: Duration = Duration::from_secs(60);
 /// Interval between attempts to stop running code while the server shuts down.
 const STOP_INTERVAL: Duration = Duration::from_millis(100);
@@ -74,7 +74,7 @@ impl BoundPort {
     }
 }
 
-/// Serves a run until a signal or a request stops the server. Calls `ready` with the address when the server accepts
+/// Serves a run until a signal or a request stops the server. Calls `ready` with the address once the server accepts
 /// requests, and `on_defect` with reports of internal errors.
 ///
 /// # Errors
@@ -115,7 +115,7 @@ pub fn serve_http(
         accept_connections(&listener, router, shutdown, &owner).await;
         Ok(())
     });
-    // Drop aborted requests, because they still own handles of the session worker.
+    // Drop aborted requests, because they still own handles to the session worker.
     drop(runtime);
     // The run is still locked, so no other server can have written an announcement.
     if let Some(folder) = &folder {
@@ -182,7 +182,7 @@ async fn accept_connections(
             drop(place);
         });
     }
-    // Stop repeatedly, because a week has several calculations and a queued request may contain a script.
+    // Stop repeatedly, because a week can have several calculations and a queued request may start a script.
     let stop_code = async {
         loop {
             owner.stop_running_code();
@@ -197,8 +197,8 @@ async fn accept_connections(
     }
 }
 
-/// Rejects a connection, and reads its input until the client closes the connection. Closing a connection with unread
-/// data can lose the response.
+/// Rejects a connection, and reads its input until the client closes the connection. If the server closed a connection
+/// with unread data, the client could lose the response.
 async fn reject_connection(mut stream: TcpStream) {
     let message =
         format!("the server has {MAX_CONNECTIONS} open connections; send the request again in a second");

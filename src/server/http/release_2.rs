@@ -15,12 +15,12 @@ use crate::request_id::needs_request_id;
 use novamind_session::request_id;
 use novamind_tools::Rejection;
 
-/// Rejections with status 200 whose code is in `error`, as in release 2.
+/// Rejections that have status 200 and whose code is in `error`, as in release 2.
 const CODES_IN_ERROR: [&str; 3] = [REQUEST_ID_REQUIRED, INVALID_PAYLOAD, "request_id_payload_mismatch"];
 const REQUEST_ID_REQUIRED: &str = "request_id_required";
 const INVALID_PAYLOAD: &str = "invalid_request_payload";
 
-/// Returns the routes that exist only in the interface of release 2, or whose responses differ there.
+/// Returns the routes that exist only in release 2, or whose responses differ in release 2.
 pub fn router(committed: &CommittedState) -> Router<RouteState> {
     let read = |respond: fn(&CommittedState) -> ApiResponse| {
         let committed = committed.clone();
@@ -60,7 +60,7 @@ async fn request_status(
     to_http_response(&state.handle.send(ApiRequest::RequestStatus { id }).await)
 }
 
-/// Returns the rejection of a request that has no valid id although its tool needs one, or that contains a
+/// Returns the rejection of a request whose tool needs a request id, if the request has no valid id or if it contains a
 /// literal such as `NaN`. `literal` is the rejection of this literal.
 pub fn rejection(tool: &str, id: &Value, literal: Option<&Rejection>) -> Option<Rejection> {
     if !needs_request_id(tool) {
@@ -74,7 +74,8 @@ pub fn rejection(tool: &str, id: &Value, literal: Option<&Rejection>) -> Option<
     literal.map(|literal| Rejection { code: INVALID_PAYLOAD, ..literal.clone() })
 }
 
-/// Converts a response to the form of release 2, in which `error` contains the code of some rejections.
+/// Converts a response to the form of release 2, in which `error` contains the code of some rejections instead of a
+/// message.
 pub fn convert(mut response: ApiResponse) -> ApiResponse {
     let body = &mut response.body;
     if body["success"] != false {

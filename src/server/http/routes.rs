@@ -32,12 +32,12 @@ pub(super) struct RouteState {
     served: ServedRun,
 }
 
-/// The id of the served run, and the notification that stops the server.
+/// The served run, and how to stop its server.
 #[derive(Clone)]
 pub struct ServedRun {
     /// ID of the served run.
     pub run: String,
-    /// Notified when a request to stop the server has arrived.
+    /// Notified when a request to stop the server arrives.
     pub stop: Arc<Notify>,
 }
 
@@ -47,12 +47,12 @@ impl RouteState {
     }
 
     /// Converts a response to the form of the run's interface.
-    fn converted(&self, response: ApiResponse) -> ApiResponse {
+    fn convert(&self, response: ApiResponse) -> ApiResponse {
         if self.has_release_2() { release_2::convert(response) } else { response }
     }
 }
 
-/// Returns a router with all routes, which the guard protects.
+/// Returns a router with all routes. The guard checks every request.
 pub fn router(
     handle: SessionHandle,
     guard: RequestGuard,
@@ -80,7 +80,7 @@ pub fn router(
         .with_state(state)
 }
 
-/// Returns the routes that do not exist in release 2, or whose responses differ there.
+/// Returns the routes that do not exist in release 2, or whose responses differ in release 2.
 fn release_1_router() -> Router<RouteState> {
     Router::new()
         .route("/vars", get(|state: State<RouteState>| handle_read(state, ApiRequest::CurrentDay)))
@@ -158,18 +158,18 @@ async fn handle_with_body(
                 },
                 None => request(fields),
             };
-            to_http_response(&state.converted(state.handle.send(request).await))
+            to_http_response(&state.convert(state.handle.send(request).await))
         }
-        Err(wrong) => close_connection(to_http_response(&state.converted(wrong))),
+        Err(wrong) => close_connection(to_http_response(&state.convert(wrong))),
     }
 }
 
 async fn call(State(state): State<RouteState>, body: Body) -> Response {
     let mut fields = match read_object(body).await {
         Ok(fields) => fields,
-        Err(wrong) => return close_connection(to_http_response(&state.converted(wrong))),
+        Err(wrong) => return close_connection(to_http_response(&state.convert(wrong))),
     };
-    // A name that is not a string is converted to text, so that the tool is rejected as unknown.
+    // A name that is not a string is converted to text, so that it is rejected as an unknown tool.
     let tool = match fields.take("tool") {
         Value::String(name) => name,
         Value::Null => String::new(),
@@ -193,7 +193,7 @@ async fn call(State(state): State<RouteState>, body: Body) -> Response {
         Some(rejection) => ApiRequest::RejectedCall { tool, args, rejection },
         None => ApiRequest::from_tool_call(&tool, args, request_id),
     };
-    to_http_response(&state.converted(state.handle.send(request).await.into_tool_response()))
+    to_http_response(&state.convert(state.handle.send(request).await.into_tool_response()))
 }
 
 async fn next_week(State(state): State<RouteState>, body: Body) -> Response {
@@ -250,7 +250,8 @@ pub(super) fn to_http_response(answer: &ApiResponse) -> Response {
     response
 }
 
-/// Closes the connection after the response. Otherwise, the server would read the unread rest of the body as the next request.
+/// Closes the connection after the response. Otherwise, the server would read the unread rest of the body as the next
+/// request.
 fn close_connection(mut response: Response) -> Response {
     response.headers_mut().insert(header::CONNECTION, header::HeaderValue::from_static("close"));
     response

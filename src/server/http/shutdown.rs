@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use tokio::sync::Notify;
 
-/// Waits for SIGINT, SIGTERM and SIGHUP, or ctrl-c on other systems, and for a request to stop.
+/// Waits for a request to stop, and for SIGINT, SIGTERM or SIGHUP (ctrl-c on other systems).
 pub struct Shutdown {
     request: Arc<Notify>,
     #[cfg(unix)]
@@ -34,7 +34,7 @@ impl Shutdown {
         Ok(Shutdown { request: Arc::default() })
     }
 
-    /// Returns the notifier through which a request stops the server.
+    /// Returns the notifier that requests use to stop the server.
     pub fn stop_notifier(&self) -> Arc<Notify> {
         self.request.clone()
     }

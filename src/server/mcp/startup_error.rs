@@ -1,4 +1,5 @@
-//! Reports an error to a client whose run cannot be opened. Without this error, the client would only see a closed connection.
+//! Reports an error to a client whose run cannot be opened. Without this error, the client would only see a closed
+//! connection.
 
 use std::io::{BufRead, IsTerminal, Write, stdin, stdout};
 
@@ -7,7 +8,7 @@ use serde_json::{Value, json};
 /// JSON-RPC error code that is reserved for errors defined by servers.
 const SERVER_ERROR: i32 = -32000;
 
-/// Responds to the first request on standard input, which is `initialize`, with an error. Returns immediately if
+/// Responds with an error to the first request on standard input, which is `initialize`. Returns immediately if
 /// standard input is a terminal.
 pub fn reject_mcp_client(problem: &str) {
     if stdin().is_terminal() {

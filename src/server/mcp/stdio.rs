@@ -1,6 +1,6 @@
-//! Connects the protocol to standard input and output. The response to a line that is not valid JSON is a parse error.
+//! Connects the protocol to standard input and output. A line that is not valid JSON is answered with a parse error.
 //!
-//! The protocol library would drop such lines, and the client would wait forever.
+//! The protocol library would drop such lines, so that the client would wait forever.
 
 use serde_json::{Value, json};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, DuplexStream, duplex};
@@ -9,12 +9,12 @@ use tokio::task::JoinHandle;
 
 use crate::non_finite;
 
-/// Size of the buffers between standard input or output and the protocol library, in bytes.
+/// Size in bytes of the buffers between the protocol library and standard input and output.
 const BUFFER_BYTES: usize = 64 * 1024;
 /// Maximum size of a message in bytes.
 const MAX_MESSAGE_BYTES: usize = 16 * 1024 * 1024;
 
-/// Opens standard input and output for the protocol. The task ends when all output is written.
+/// Opens standard input and output for the protocol. The returned task ends when all output is written.
 pub fn open() -> ((DuplexStream, DuplexStream), JoinHandle<()>) {
     let (input, forward) = duplex(BUFFER_BYTES);
     let (output, answers) = duplex(BUFFER_BYTES);
@@ -73,7 +73,7 @@ async fn skip_line(input: &mut BufReader<tokio::io::Stdin>) {
     }
 }
 
-/// Writes protocol messages and parse errors, each as a complete line.
+/// Writes protocol messages and parse errors, each on a separate line.
 async fn write_lines(answers: DuplexStream, mut problems: UnboundedReceiver<String>) {
     let mut output = tokio::io::stdout();
     let mut answers = BufReader::new(answers).lines();

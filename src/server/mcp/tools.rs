@@ -30,11 +30,11 @@ fn describe_tool(spec: &'static ToolSpec, numbers: &ParameterNumbers) -> Tool {
 }
 
 fn tool_annotations(spec: &ToolSpec) -> ToolAnnotations {
-    let settles = matches!(spec.kind, ToolKind::Read | ToolKind::Setting);
+    let is_idempotent = matches!(spec.kind, ToolKind::Read | ToolKind::Setting);
     ToolAnnotations::new()
         .read_only(spec.kind == ToolKind::Read)
         .destructive(matches!(spec.kind, ToolKind::Purchase | ToolKind::Time))
-        .idempotent(settles)
+        .idempotent(is_idempotent)
         .open_world(false)
 }
 

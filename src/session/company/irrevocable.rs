@@ -221,7 +221,7 @@ mod tests {
         let few: Vec<OfferMessage> =
             (1..=5).map(|customer| offer_message_to(customer, &[(Plan::B, 35.0)])).collect();
         assert_eq!(descriptions(&few).len(), 5);
-        let named = |customer: u32| session.company().company_names().name_with_number(customer);
+        let named = |customer: u32| session.company().enterprise_names().name_with_number(customer);
         assert_eq!(descriptions(&few)[0], format!("offered to {}: B $35.00", named(1)));
         let mut many: Vec<OfferMessage> =
             (1..=3_569).map(|customer| offer_message_to(customer, &[(Plan::B, 35.0)])).collect();

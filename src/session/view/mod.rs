@@ -124,7 +124,7 @@ impl<'a> CompanyView<'a> {
     }
 
     /// Returns the names of the enterprises.
-    pub fn company_names(&self) -> &'a EnterpriseNames {
+    pub fn enterprise_names(&self) -> &'a EnterpriseNames {
         &self.simulation.names
     }
 

@@ -10,7 +10,7 @@ use super::super::{
 use novamind_world::identifiers::Group;
 use novamind_world::params::Interface;
 
-/// The tool `get_social_posts`.
+/// The tool `get_social_posts`, which returns the newest posts of other authors.
 pub struct GetSocialPosts;
 
 const ANY_INTEGER: ArgumentKind =
@@ -75,10 +75,10 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"limit": 1}"#,
 };
 
-/// Maximum number of posts that a call returns.
+/// The maximum number of posts that a call returns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PostLimit {
-    /// The number of posts in the parameters.
+    /// The limit that the parameters define.
     Default,
     /// At most this number of posts.
     Newest(usize),
@@ -99,23 +99,23 @@ pub struct SocialPosts {
 /// A post of an author other than the player.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SocialPost {
-    /// Number of the post.
+    /// Number of the post, which is unique in the run.
     pub post_id: u32,
     /// Day on which the post was published.
     pub day: u32,
     /// Text of the post.
     pub content: String,
-    /// Number of the company's post, if this post is a comment.
+    /// Number of the company's post on which this post comments; `None` for other posts.
     pub reply_to_agent_post_id: Option<u32>,
     /// Author of the post; absent under release 2.
     #[serde(flatten)]
     pub author: Option<PostAuthor>,
-    /// Text of the company's post, if this post is a comment.
+    /// Text of the company's post on which this post comments; absent for other posts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub replying_to_your_post: Option<String>,
 }
 
-/// Author of a post of the social feed.
+/// The author of a post in the social feed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PostAuthor {
     /// Group whose reaction a comment on the company's post expresses.
@@ -126,7 +126,7 @@ pub struct PostAuthor {
     pub customer_type: &'static str,
     /// Always empty, as in the released simulator.
     pub custom_name: Option<String>,
-    /// Name of the author's profile.
+    /// Name of the author's profile; `None` for authors without a name.
     pub persona_name: Option<Cow<'static, str>>,
 }
 

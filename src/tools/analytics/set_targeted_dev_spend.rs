@@ -11,7 +11,7 @@ use super::super::{
 use novamind_world::identifiers::Group;
 use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedDevelopment};
 
-/// The tool `set_targeted_dev_spend`.
+/// The tool `set_targeted_dev_spend`, which sets the development budgets of single groups.
 pub struct SetTargetedDevSpend;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -43,7 +43,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"targeted_spend": {"S1": 2500, "E3": 400}}"#,
 };
 
-/// Targeted development budgets in force.
+/// Targeted development budgets in force after the call.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DevelopmentBudgets {
     /// Budgets in dollars per day, by group.

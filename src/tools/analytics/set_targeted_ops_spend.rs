@@ -15,7 +15,7 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Interface;
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan, Settings, SettingsChange};
 
-/// The tool `set_targeted_ops_spend`.
+/// The tool `set_targeted_ops_spend`, which sets support budgets by group, plan or customer.
 pub struct SetTargetedOpsSpend;
 
 const fn scope_argument(
@@ -109,7 +109,7 @@ impl SupportScopes {
     }
 }
 
-/// Targeted support budgets in force, in dollars per day.
+/// Targeted support budgets in force after the call, in dollars per day.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SupportBudgets {
     /// Budgets by group.
@@ -253,7 +253,7 @@ fn unknown_names(arguments: &Value) -> String {
     unknown.join(", ")
 }
 
-/// Names the target of an amount: a group, a plan, a group with a plan, or a customer.
+/// Describes the target of an amount: a group, a plan, a group and a plan, or a customer.
 fn describe_target(scope: &str, key: &[&str]) -> String {
     match scope {
         "by_plan" => format!("plan {}", key.join(".")),

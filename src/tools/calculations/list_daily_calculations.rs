@@ -8,7 +8,7 @@ use super::super::{
 };
 use super::calculations;
 
-/// The tool `list_daily_calculations`.
+/// The tool `list_daily_calculations`, which returns the names of the registered calculations.
 pub struct ListDailyCalculations;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -7,7 +7,7 @@ use super::super::{
     ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `register_daily_calculation`.
+/// The tool `register_daily_calculation`, which stores a calculation that runs before every week.
 pub struct RegisterDailyCalculation;
 
 static SPEC: ToolSpec = ToolSpec {

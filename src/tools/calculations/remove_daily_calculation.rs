@@ -6,7 +6,7 @@ use super::super::{
 };
 use super::{calculations, not_found_rejection};
 
-/// The tool `remove_daily_calculation`.
+/// The tool `remove_daily_calculation`, which removes a stored calculation.
 pub struct RemoveDailyCalculation;
 
 static SPEC: ToolSpec = ToolSpec {

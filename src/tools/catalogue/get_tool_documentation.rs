@@ -9,7 +9,7 @@ use super::super::{
 };
 use super::CATALOGUE;
 
-/// The tool `get_tool_documentation`.
+/// The tool `get_tool_documentation`, which returns the documentation of tools.
 pub struct GetToolDocumentation;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -8,7 +8,7 @@ use super::super::{
 };
 use super::NameSelection;
 
-/// The tool `describe_tables`.
+/// The tool `describe_tables`, which returns the descriptions of tables and their columns.
 pub struct DescribeTables;
 
 static SPEC: ToolSpec = ToolSpec {

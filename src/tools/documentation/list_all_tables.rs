@@ -7,7 +7,7 @@ use super::super::{
     ToolSpec,
 };
 
-/// The tool `list_all_tables`.
+/// The tool `list_all_tables`, which returns the tables that can be queried.
 pub struct ListAllTables;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -31,7 +31,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{}"#,
 };
 
-/// List of the tables that can be queried.
+/// A list of the tables that can be queried.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct TableList {
     /// Number of tables that can be queried.

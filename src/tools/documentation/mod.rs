@@ -13,9 +13,9 @@ use novamind_base::similar_names;
 
 /// Names of tools or tables that a call requests.
 pub enum NameSelection {
-    /// All names.
+    /// All tools or tables.
     All,
-    /// Only the names in this list.
+    /// Only the tools or tables in this list.
     Named(Vec<String>),
 }
 

@@ -30,9 +30,9 @@ impl ElementOutcome {
 /// The reason why one element of a list of deals was not sent. The remaining elements of the list are sent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElementFailure {
-    /// Customer number, if the element contains a number.
+    /// Customer number; `None` if the element contains no valid number.
     customer: Option<i64>,
-    /// Error text for the result.
+    /// Reason that the result of the call states for the element.
     error: String,
     /// Rejection of the whole call, used if no element is sent.
     refusal: Box<Rejection>,
@@ -56,16 +56,16 @@ impl ElementFailure {
 }
 
 fn to_deal_results(outcomes: Vec<ElementOutcome>) -> DealResults {
-    let unreadable = |fate: &ElementOutcome| {
-        matches!(fate, ElementOutcome::Failed(ElementFailure { is_unreadable: true, .. }))
+    let unreadable = |outcome: &ElementOutcome| {
+        matches!(outcome, ElementOutcome::Failed(ElementFailure { is_unreadable: true, .. }))
     };
     let (first, rest): (Vec<ElementOutcome>, Vec<ElementOutcome>) =
         outcomes.into_iter().partition(unreadable);
     DealResults { results: first.into_iter().chain(rest).map(to_deal_result).collect() }
 }
 
-fn to_deal_result(fate: ElementOutcome) -> DealResult {
-    match fate {
+fn to_deal_result(outcome: ElementOutcome) -> DealResult {
+    match outcome {
         ElementOutcome::Sent(customer_id) => DealResult::Done { customer_id, success: true },
         ElementOutcome::Failed(failure) => {
             DealResult::Failed { customer_id: failure.customer, error: failure.error }
@@ -78,7 +78,7 @@ fn to_deal_result(fate: ElementOutcome) -> DealResult {
 fn reject_if_all_failed(outcomes: Vec<ElementOutcome>) -> Result<DealResults, Rejection> {
     let refused = match outcomes.first() {
         Some(ElementOutcome::Failed(first))
-            if outcomes.iter().all(|fate| matches!(fate, ElementOutcome::Failed(_))) =>
+            if outcomes.iter().all(|outcome| matches!(outcome, ElementOutcome::Failed(_))) =>
         {
             Some((*first.refusal).clone())
         }

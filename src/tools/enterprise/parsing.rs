@@ -79,14 +79,14 @@ pub(super) fn malformed_element(path: &str, expected: &str) -> ElementError {
     ElementFailure::unreadable(None, "invalid format", refusal).into()
 }
 
-/// Parses all offerings of a deal. Returns at most `most` offerings.
+/// Parses all offerings of a deal. Returns at most `max_offerings` offerings.
 ///
 /// # Errors
 /// `offerings_missing`, `offering_short`, `offering_no_price`, `offering_malformed`, `wrong_type`.
 pub(super) fn parse_offerings(
     given: Option<&Value>,
     customer: i64,
-    most: usize,
+    max_offerings: usize,
     path: &str,
 ) -> Result<Vec<Offering>, ElementError> {
     let Some(list) = given.and_then(Value::as_array).filter(|list| !list.is_empty()) else {
@@ -100,7 +100,7 @@ pub(super) fn parse_offerings(
         .enumerate()
         .map(|(at, value)| parse_offering(value, at, customer, &format!("{path}.offerings.{at}")))
         .collect::<Result<Vec<Offering>, ElementError>>()?;
-    offerings.truncate(most);
+    offerings.truncate(max_offerings);
     Ok(offerings)
 }
 

@@ -10,7 +10,7 @@ use super::parsing::{ElementError, malformed_element, parse_deal_customer, parse
 use super::{ElementFailure, ElementOutcome, RESULT_FIELDS, reject_if_all_failed};
 use novamind_world::command::Command;
 
-/// The tool `reject_enterprise_deal`.
+/// The tool `reject_enterprise_deal`, which ends open threads with enterprises although no deal was made.
 pub struct RejectEnterpriseDeal;
 
 /// A thread that the call ends.
@@ -78,9 +78,9 @@ impl Tool for RejectEnterpriseDeal {
                 _ => Err(rejection.no_thread_failure()),
             }
         };
-        let fates: Vec<ElementOutcome> =
+        let outcomes: Vec<ElementOutcome> =
             given.into_iter().map(|given| ElementOutcome::from_result(given.and_then(&mut end))).collect();
-        let results = reject_if_all_failed(fates)?;
+        let results = reject_if_all_failed(outcomes)?;
         Ok(PlannedCall::with_command(Command::RejectDeals(threads), results))
     }
 }

@@ -14,7 +14,7 @@ use novamind_world::enterprise::OpenThreads;
 use novamind_world::enterprise::messages::OfferDraft;
 use novamind_world::events::Offering;
 
-/// The tool `send_enterprise_deal`.
+/// The tool `send_enterprise_deal`, which sends offers to enterprises.
 pub struct SendEnterpriseDeal;
 
 const EXAMPLE: &str = r#"[[207, [["B", 31.5], ["C", 54]]]]"#;
@@ -105,9 +105,9 @@ impl Tool for SendEnterpriseDeal {
             proposals.push(proposal);
             Ok(customer)
         };
-        let fates: Vec<ElementOutcome> =
+        let outcomes: Vec<ElementOutcome> =
             given.into_iter().map(|given| ElementOutcome::from_result(given.and_then(&mut send))).collect();
-        let results = reject_if_all_failed(fates)?;
+        let results = reject_if_all_failed(outcomes)?;
         Ok(PlannedCall::with_command(Command::SendDeals(proposals), results))
     }
 }
@@ -144,9 +144,9 @@ fn to_offer_draft(
         return Ok(OfferDraft { customer, offerings });
     }
     // The table of customers also contains the market observer.
-    let observer = number.is_some_and(|customer| customer > 0 && customer < FIRST_CUSTOMER);
+    let is_observer = number.is_some_and(|customer| customer > 0 && customer < FIRST_CUSTOMER);
     match number.and_then(|customer| world.customers.find(customer).map(|(group, _)| (customer, group))) {
-        None if !observer => {
+        None if !is_observer => {
             let message = format!("there is no customer {given}; enterprise_turns and customers list them");
             Err(failed("customer_not_found", "not found", message))
         }

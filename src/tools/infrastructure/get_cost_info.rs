@@ -8,7 +8,7 @@ use super::super::{
 };
 use novamind_world::params::Params;
 
-/// The tool `get_cost_info`.
+/// The tool `get_cost_info`, which returns the costs of model tiers and capacity tiers.
 pub struct GetCostInfo;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -56,18 +56,18 @@ pub struct PriceList {
     pub note: String,
 }
 
-/// Cost and quality of a model tier.
+/// The cost and quality of a model tier.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelTierFacts {
     /// Compute cost in dollars per unit.
     pub cost_per_usage_unit: f64,
     /// Factor by which the tier multiplies product quality.
     pub quality_multiplier: f64,
-    /// Class of the model.
+    /// Class of the model, as the parameters name it.
     pub class: String,
 }
 
-/// Size and cost of a capacity tier.
+/// The size and cost of a capacity tier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct CapacityTierFacts {
     /// Capacity in units per day.

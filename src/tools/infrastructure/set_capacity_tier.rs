@@ -8,7 +8,7 @@ use super::super::{
 };
 use novamind_world::settings::{CoreSettings, Settings, SettingsChange};
 
-/// The tool `set_capacity_tier`.
+/// The tool `set_capacity_tier`, which sets the rented capacity tier.
 pub struct SetCapacityTier;
 
 const TIER_RANGE: NumberRange = NumberRange::between(0.0, 7.0);
@@ -46,7 +46,7 @@ static SPEC: ToolSpec = ToolSpec {
 /// Rented capacity after a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RentedCapacity {
-    /// Rented capacity tier.
+    /// Rented capacity tier, 0 to 7.
     pub tier: u8,
     /// Capacity in units per day.
     pub capacity_units: u32,

@@ -11,7 +11,7 @@ use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 use novamind_world::market::insights::Insights;
 
-/// The tool `get_group_insights`.
+/// The tool `get_group_insights`, which returns the estimates of a known group.
 pub struct GetGroupInsights;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -78,13 +78,13 @@ pub struct GroupInsights {
     pub segment: &'static str,
     /// Study level, 1 to 5.
     pub info_level: u8,
-    /// Maximum error of the estimates, as text.
+    /// Margin of error of the estimates, as text, for example `±40%`.
     pub noise: String,
     /// Estimated means of the group's parameters.
     pub estimates: Estimates,
     /// Leads per subscriber per day that the group brings to known groups, and that known groups bring to the group.
     pub network_influence: Influence,
-    /// Weight of the group's reputation for known groups, and of their reputations for the group.
+    /// Weight of the group's reputation for known groups, and weight of their reputations for the group.
     pub reputation_influence: Influence,
 }
 

@@ -9,7 +9,7 @@ use super::{margin_of_error_label, segment_label};
 use novamind_world::events::{Phase, Reading, Trend};
 use novamind_world::identifiers::Group;
 
-/// The tool `get_market_overview`.
+/// The tool `get_market_overview`, which returns the known groups and the latest published PMI.
 pub struct GetMarketOverview;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -42,10 +42,10 @@ static SPEC: ToolSpec = ToolSpec {
     example: "{}",
 };
 
-/// Overview of the known groups and the economy.
+/// An overview of the known groups and the economy.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct MarketOverview {
-    /// Known groups by identifier.
+    /// Known groups, ordered by identifier.
     pub known_groups: Vec<KnownGroup>,
     /// Number of groups that are not discovered yet.
     pub undiscovered_count: usize,
@@ -53,7 +53,7 @@ pub struct MarketOverview {
     pub macroeconomic: Option<Macroeconomy>,
 }
 
-/// A known group.
+/// A known group, with its study level.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct KnownGroup {
     /// Identifier of the known group.
@@ -64,7 +64,7 @@ pub struct KnownGroup {
     pub segment: &'static str,
     /// Study level, 1 to 5.
     pub info_level: u8,
-    /// Maximum error of estimates at the group's study level, as text.
+    /// Margin of error at the group's study level, as text, for example `±40%`.
     pub noise: String,
 }
 
@@ -73,7 +73,7 @@ pub struct KnownGroup {
 pub struct Macroeconomy {
     /// Value of the PMI; 50 is neutral.
     pub pmi_value: f64,
-    /// Trend of the PMI.
+    /// Trend of the economy that the value indicates.
     pub pmi_trend: Trend,
     /// Change in the PMI since the previous publication.
     pub pmi_change: f64,

@@ -11,7 +11,7 @@ use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 use novamind_world::market::studies::default_target;
 
-/// The tool `research_group`.
+/// The tool `research_group`, which orders a market study of a known group.
 pub struct ResearchGroup;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -79,7 +79,7 @@ pub struct StudyOrder {
 pub struct OrderedStudy {
     /// Group that is studied.
     pub group_id: Group,
-    /// Study level after the completion.
+    /// Study level of the group after the completion, 2 to 5.
     pub new_level: u8,
     /// Day on which the study is completed.
     pub expected_completion_day: u32,
@@ -87,7 +87,7 @@ pub struct OrderedStudy {
     pub is_refresh: bool,
 }
 
-/// Parses the target level. As in the released simulator, 3.0 is not a valid level.
+/// Parses the target level. As in the released simulator, a level that is written as 3.0 is invalid.
 fn parse_target_level(arguments: &Arguments, group: Group, view: &ToolContext<'_>) -> Result<u8, Rejection> {
     let research = &view.params().group_research;
     let level = view.world().market.knowledge[group].level;

@@ -9,7 +9,7 @@ use super::super::{
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 
-/// The tool `research_market`.
+/// The tool `research_market`, which buys an attempt to discover a group.
 pub struct ResearchMarket;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -40,13 +40,13 @@ static SPEC: ToolSpec = ToolSpec {
     example: "{}",
 };
 
-/// Result of an attempt to discover a group.
+/// The result of an attempt to discover a group.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DiscoveryAttempt {
     /// The attempt discovered a group.
     Found {
-        /// The discovered group.
+        /// Group that the player now knows at study level 1.
         discovered_group_id: Group,
     },
     /// The attempt discovered no group.

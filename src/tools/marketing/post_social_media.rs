@@ -8,7 +8,7 @@ use super::super::{
 };
 use novamind_world::command::{Command, PostDraft, ResolvedCommand};
 
-/// The tool `post_social_media`.
+/// The tool `post_social_media`, which publishes a post of the company.
 pub struct PostSocialMedia;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -60,13 +60,13 @@ static SPEC: ToolSpec = ToolSpec {
 /// A post that the company published.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct PublishedPost {
-    /// Number among the company's posts.
+    /// Number of the post among the company's posts, from 1.
     pub agent_post_id: u32,
     /// Day on which the post was published.
     pub day: u32,
     /// Text of the post.
     pub content: String,
-    /// Number of the post to which this post replies.
+    /// Number of the public post to which this post replies; `None` if it is not a reply.
     pub reply_to_post_id: Option<u32>,
 }
 

@@ -10,7 +10,7 @@ use super::super::{
 use novamind_base::formatting::json_number;
 use novamind_world::settings::{AdsStrength, PerCustomer, PerGroup, Settings, SettingsChange};
 
-/// The tool `set_ads_strength`.
+/// The tool `set_ads_strength`, which sets the strength of in-app advertising.
 pub struct SetAdsStrength;
 
 const STRENGTH_RULE: AmountRule = AmountRule {

@@ -11,7 +11,7 @@ use super::super::{
 use novamind_base::formatting::json_number;
 use novamind_world::settings::{Settings, SettingsChange};
 
-/// The tool `set_daily_spend`.
+/// The tool `set_daily_spend`, which sets the daily budgets of operations and development.
 pub struct SetDailySpend;
 
 const fn budget_argument(name: &'static str, doc: &'static str) -> Argument {
@@ -55,7 +55,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"operations": 350}"#,
 };
 
-/// A daily budget for all customers.
+/// A daily budget that applies to all customers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, EnumString, IntoStaticStr, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]

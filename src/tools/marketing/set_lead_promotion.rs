@@ -13,7 +13,7 @@ use novamind_base::formatting::json_number;
 use novamind_world::identifiers::Channel;
 use novamind_world::settings::{LeadPromotion, PerGroup, Settings, SettingsChange};
 
-/// The tool `set_lead_promotion`.
+/// The tool `set_lead_promotion`, which sets the first-bill discounts.
 pub struct SetLeadPromotion;
 
 const fn scope_argument(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {

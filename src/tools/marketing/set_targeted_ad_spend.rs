@@ -13,7 +13,7 @@ use super::BUDGET_RULE;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedAds};
 
-/// The tool `set_targeted_ad_spend`.
+/// The tool `set_targeted_ad_spend`, which sets the advertising budgets by channel and group.
 pub struct SetTargetedAdSpend;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -57,7 +57,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"targeted_spend": {"linkedin": {"E1": 120}, "search_ads": {"S1": 80, "S3": 40}}}"#,
 };
 
-/// Advertising budgets in force.
+/// Advertising budgets in force after the call.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AdBudgets {
     /// Budgets in dollars per day, by channel and group.
@@ -83,14 +83,15 @@ fn transpose(map: &Map<String, Value>) -> Map<String, Value> {
 /// Returns the matrix with channels as outer keys, for both accepted orders.
 fn channels_as_outer_keys<'a>(given: &'a Value, view: &ToolContext<'_>) -> Result<Cow<'a, Value>, Rejection> {
     let Some(map) = given.as_object() else { return Ok(Cow::Borrowed(given)) };
-    let stray = |map: &Map<String, Value>| map.keys().find(|key| Channel::parse(key).is_none()).cloned();
-    let Some(first) = stray(map) else { return Ok(Cow::Borrowed(given)) };
+    let first_non_channel =
+        |map: &Map<String, Value>| map.keys().find(|key| Channel::parse(key).is_none()).cloned();
+    let Some(first) = first_non_channel(map) else { return Ok(Cow::Borrowed(given)) };
     let is_group = |key: &String| Group::parse(key).is_some_and(|group| view.is_known(group));
     if !map.keys().any(is_group) {
         parse_channel(&first, &format!("targeted_spend.{first}"))?;
     }
     let turned = transpose(map);
-    match stray(&turned) {
+    match first_non_channel(&turned) {
         Some(key) => {
             let message = "the order is channel, then group";
             Err(Rejection::for_field(format!("targeted_spend.{key}"), "nesting_inverted", message))

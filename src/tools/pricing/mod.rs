@@ -19,7 +19,7 @@ use super::rejection::Rejection;
 use super::spec::NumberRange;
 use novamind_world::identifiers::Plan;
 
-/// Result of tools that set one number per plan.
+/// The result of tools that set one number per plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlanUpdate<T: Serialize> {
     /// Values that the call set, in the order of the call.
@@ -35,7 +35,7 @@ pub(super) const DISCOUNT_RULE: AmountRule = AmountRule {
     range: NumberRange::AT_LEAST_ZERO,
 };
 
-/// Parses the discount that applies to all customers of a promotion.
+/// Parses the global discount of a call, which applies to all customers.
 pub(super) fn parse_global_discount(value: &Value, field: &str) -> Result<f64, Rejection> {
     json_f64(value).filter(|number| NumberRange::AT_LEAST_ZERO.contains(*number)).ok_or_else(|| {
         let message = "the global discount must be a number of at least zero, in dollars a month";

@@ -10,7 +10,7 @@ use super::{PlanUpdate, map_plans, parse_per_plan_arguments, plan_values_json};
 use novamind_world::identifiers::Plan;
 use novamind_world::settings::{Settings, SettingsChange};
 
-/// The tool `set_model_tiers`.
+/// The tool `set_model_tiers`, which sets the model tiers of plans.
 pub struct SetModelTiers;
 
 const TIER_RANGE: NumberRange = NumberRange::between(1.0, 5.0);

@@ -11,7 +11,7 @@ use novamind_base::formatting::json_number;
 use novamind_world::identifiers::Plan;
 use novamind_world::settings::{Settings, SettingsChange};
 
-/// The tool `set_prices`.
+/// The tool `set_prices`, which sets the list prices of plans.
 pub struct SetPrices;
 
 const fn price_argument(name: &'static str, doc: &'static str) -> Argument {

@@ -13,7 +13,7 @@ use novamind_base::formatting::json_number;
 use novamind_world::identifiers::Group;
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan, Promotion, Settings, SettingsChange};
 
-/// The tool `set_promotion`.
+/// The tool `set_promotion`, which sets the discounts of subscribers.
 pub struct SetPromotion;
 
 const fn scope_argument(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {

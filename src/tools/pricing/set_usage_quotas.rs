@@ -15,7 +15,7 @@ use novamind_world::identifiers::{ByPlan, Plan};
 use novamind_world::quota::Quota;
 use novamind_world::settings::{CoreSettings, Settings, SettingsChange};
 
-/// The tool `set_usage_quotas`.
+/// The tool `set_usage_quotas`, which sets the quotas of all plans.
 pub struct SetUsageQuotas;
 
 const fn quota_argument(name: &'static str, doc: &'static str) -> Argument {

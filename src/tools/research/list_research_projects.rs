@@ -8,7 +8,7 @@ use super::super::{
 use novamind_base::formatting::round_to;
 use novamind_world::params::ResearchTier;
 
-/// The tool `list_research_projects`.
+/// The tool `list_research_projects`, which returns the R&D tiers with their progress.
 pub struct ListResearchProjects;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -43,7 +43,7 @@ pub struct ResearchProjects {
 /// Price, means and progress of an R&D tier.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResearchTierFacts {
-    /// Number of the R&D tier.
+    /// Number of the R&D tier, 1 to 20.
     pub tier: u8,
     /// Name of the R&D tier.
     pub name: String,

@@ -11,7 +11,7 @@ use novamind_base::formatting::round_to;
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::events::Project;
 
-/// The tool `start_research_project`.
+/// The tool `start_research_project`, which buys an R&D project.
 pub struct StartResearchProject;
 
 const TIER_RANGE: NumberRange = NumberRange::between(1.0, 20.0);
@@ -62,9 +62,9 @@ static SPEC: ToolSpec = ToolSpec {
 /// An R&D project that a call started.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StartedProject {
-    /// Identifier of the project.
+    /// Identifier `t<tier>_<n>`, where `n` counts the projects started in the tier.
     pub project_id: String,
-    /// R&D tier of the project.
+    /// R&D tier of the project, 1 to 20.
     pub tier: u8,
     /// Name of the R&D tier.
     pub name: String,

@@ -6,7 +6,7 @@ use super::super::{
 };
 use super::{find_script, script_name, stored_scripts};
 
-/// The tool `delete_script`.
+/// The tool `delete_script`, which deletes a stored script.
 pub struct DeleteScript;
 
 static SPEC: ToolSpec = ToolSpec {

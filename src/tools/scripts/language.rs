@@ -27,9 +27,9 @@ pub fn python_marker_hint(code: &str) -> Option<&'static str> {
         let is_block = line.starts_with("for ") && line.trim_end().ends_with(':');
         begins || is_from_import || is_block || line.contains("query(\"") || line.contains("query('")
     };
-    let looks_like_it =
+    let looks_like_python =
         Language::detect(code) == Language::Sql && code.lines().map(str::trim_start).any(is_python);
-    looks_like_it.then_some("this looks like Python: let its first line be `# python`")
+    looks_like_python.then_some("this looks like Python: let its first line be `# python`")
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::super::{
 };
 use super::stored_scripts;
 
-/// The tool `list_scripts`.
+/// The tool `list_scripts`, which returns the names of the stored scripts.
 pub struct ListScripts;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -5,7 +5,7 @@ use super::super::{
 };
 use super::{CODE_DESCRIPTION, MAX_SCRIPT_SECONDS};
 
-/// The tool `python_exec`.
+/// The tool `python_exec`, which runs SQL statements or Python code.
 pub struct PythonExec;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -7,7 +7,7 @@ use super::super::{
 };
 use super::CODE_DESCRIPTION;
 
-/// The tool `register_script`.
+/// The tool `register_script`, which stores a script under a name.
 pub struct RegisterScript;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -5,7 +5,7 @@ use super::super::{
 };
 use super::{MAX_SCRIPT_SECONDS, find_script, script_name};
 
-/// The tool `run_script`.
+/// The tool `run_script`, which runs a stored script.
 pub struct RunScript;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -6,7 +6,7 @@ use super::super::{
     ToolSpec,
 };
 
-/// The tool `get_vars`.
+/// The tool `get_vars`, which returns the current day.
 pub struct GetVars;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -34,7 +34,7 @@ static SPEC: ToolSpec = ToolSpec {
 /// Variables that `get_vars` returns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Vars {
-    /// The last simulated day.
+    /// Last simulated day; 0 before the first week.
     pub current_day: u32,
 }
 

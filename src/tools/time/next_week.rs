@@ -8,8 +8,8 @@ use super::super::{
     ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `next_week`. The session implements the tool; `NextWeek` documents the tool and checks rationale and
-/// forecasts.
+/// The tool `next_week`, which simulates a week. The session implements the tool; `NextWeek` documents the tool and
+/// checks the rationale and the forecasts.
 pub struct NextWeek;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -66,7 +66,7 @@ static SPEC: ToolSpec = ToolSpec {
 
 /// Rationale and forecasts that are submitted before a week.
 pub struct WeekArguments {
-    /// Rationale of the week.
+    /// The player's reasons for the week; never blank.
     pub rationale: String,
     /// Forecasts of cash in 7, 28, 84 and 182 days.
     pub forecasts: [Forecast; 4],
@@ -125,7 +125,7 @@ pub fn parse_rationale(given: &Value) -> Result<String, Rejection> {
     }
 }
 
-/// Parses the four forecasts of a week, one horizon after the other.
+/// Parses the four forecasts of a week, shortest horizon first.
 pub fn parse_forecasts(given: &Value, horizons: &[u32]) -> Result<[Forecast; 4], Rejection> {
     let Some(map) = given.as_object() else {
         let message = format!("the forecasts are required: {}", FORECAST_KEYS.join(", "));

@@ -4,7 +4,8 @@ use super::super::{
     ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `query`. The session implements the tool; `Query` documents the tool and checks its argument.
+/// The tool `query`, which runs one SQL statement. The session implements the tool; `Query` documents the tool and
+/// checks its argument.
 pub struct Query;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -31,8 +31,8 @@ fn rectangle_path(left: f64, top: f64, width: f64, height: f64) -> String {
     path
 }
 
-/// Returns the path of a braille character, which has two columns of four dots. The lower six bits are the first three
-/// rows by column, and the upper two bits are the last row.
+/// Returns the path of a braille character, which has two columns of four dots. The lower six bits of its code are the
+/// first three rows, column by column, and the upper two bits are the last row.
 fn braille_path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
     let bits = sign as u32 - 0x2800;
     let places = [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3)];
@@ -65,7 +65,8 @@ fn thin_variant(sign: char) -> Option<char> {
     pairs.into_iter().find(|(thick, _)| *thick == sign).map(|(_, thin)| thin)
 }
 
-/// Returns the path of a box-drawing character: lines from the center of the cell to some of its sides.
+/// Returns the path of a box-drawing character: lines from the center of the cell to those sides that the character
+/// connects.
 fn line_path(sign: char, line: f64, left: f64, top: f64, (width, height): (f64, f64)) -> String {
     let (to_left, to_right) = (!"│┌└├".contains(sign), !"│┐┘┤".contains(sign));
     let (up, down) = (!"─┌┐┬".contains(sign), !"─└┘┴".contains(sign));

@@ -11,15 +11,15 @@ pub const SERIES_SYMBOLS: [&str; 4] = ["█", "▒", "━", "•"];
 
 /// A bar with its name and value.
 pub struct Bar<'a> {
-    /// Name of the item, or an empty text if the row above shows the same item.
+    /// Name of the item; empty if the row above belongs to the same item.
     pub name: &'a str,
     /// Alignment of the name. Names that are numbers are right-aligned.
     pub name_align: Align,
-    /// Value of the bar, or `None` for a row without a bar.
+    /// Length of the bar in the unit of the scale; `None` for a row without a bar.
     pub value: Option<f64>,
-    /// Formatted value of the bar.
+    /// The value as text.
     pub label: &'a str,
-    /// Index of the series to which the bar belongs.
+    /// Index of the series, which selects the character of the bar.
     pub series: usize,
     /// Whether the bar is selected.
     pub selected: bool,
@@ -31,13 +31,13 @@ pub struct BarLayout {
     name_width: u16,
     value_width: u16,
     bar_width: u16,
-    /// Index of the cell with the zero line among the cells of the bar.
+    /// Index of the cell that contains the zero line, counted from the left end of the bars.
     zero_cell: u16,
     cells_per_unit: f64,
 }
 
 impl BarLayout {
-    /// Returns the layout that fits all bars into rows of a width.
+    /// Returns the layout in which all bars fit into rows of the given width.
     pub fn from_bars<'a>(bars: impl Iterator<Item = Bar<'a>>, width: u16) -> BarLayout {
         let (mut names, mut values, mut least, mut most) = (1, 1, 0.0_f64, 0.0_f64);
         for bar in bars {
@@ -63,7 +63,7 @@ impl BarLayout {
         }
     }
 
-    /// Returns the first cell and the number of cells of a bar. Values other than zero have at least one cell.
+    /// Returns the first cell and the number of cells of a bar. Bars of values other than zero have at least one cell.
     fn cells(&self, value: f64) -> (u16, u16) {
         let length = (value.abs() * self.cells_per_unit).round() as u16;
         let length = if value == 0.0 { 0 } else { length.max(1) };

@@ -9,10 +9,11 @@ use crate::canvas::{Align, Canvas};
 use crate::text::format_change;
 use crate::theme::Role;
 
-/// Largest distance of a band from the curves, as a multiple of their range. Beyond this distance, the band is cut.
+/// Largest distance of a band from the curves, as a multiple of the range of the curves. The band is cut at this
+/// distance.
 const MAX_BAND_DISTANCE: f64 = 1.0;
-/// Smallest distance at which a band is cut, as a share of the largest absolute value, so that the band of a nearly
-/// constant curve stays visible.
+/// Smallest distance at which a band is cut, as a share of the largest absolute value of the curves. Without this
+/// minimum, the band around a nearly constant curve would not be visible.
 const MIN_BAND_DISTANCE: f64 = 0.25;
 /// Distance between the arrows that mark a cut band, in columns.
 const CUT_MARK_DISTANCE: u16 = 4;
@@ -23,13 +24,13 @@ const MIN_WIDTH_FOR_NAMES: u16 = 36;
 /// A curve of a chart.
 #[derive(Debug, Clone)]
 pub struct Curve {
-    /// Points of the curve. Points with a value that is not finite are omitted.
+    /// Points as horizontal and vertical values. Points that are not finite are omitted.
     pub points: Vec<(f64, f64)>,
     /// Role that determines the color of the curve.
     pub role: Role,
-    /// Whether separate points are drawn instead of a line.
+    /// Whether the points are drawn separately, not connected by a line.
     pub is_scatter: bool,
-    /// Name that is drawn at the end of the curve if there is space, or an empty text.
+    /// Name that is drawn at the end of the curve if there is space; empty for no name.
     pub name: &'static str,
 }
 
@@ -51,12 +52,12 @@ impl Curve {
     }
 }
 
-/// A shaded area between two curves. A band that would flatten the curves is cut, and arrows mark where it continues.
+/// A shaded area between two bounds. A band that would flatten the curves is cut, and arrows mark where it continues.
 #[derive(Debug, Clone)]
 pub struct Band {
-    /// Position, lower bound and upper bound of each point, in the order of positions.
+    /// Horizontal position, lower bound and upper bound of each point, sorted by position.
     pub bounds: Vec<(f64, f64, f64)>,
-    /// Name that is drawn at the end of the band, or an empty text.
+    /// Name that is drawn at the end of the band; empty for no name.
     pub name: &'static str,
 }
 
@@ -77,15 +78,15 @@ impl Band {
 pub struct XAxis<'a> {
     /// Function that formats a value for a label.
     pub format: &'a dyn Fn(f64) -> String,
-    /// Values that the axis must contain.
+    /// Values that the axis must include.
     pub required_values: &'a [f64],
 }
 
 /// The vertical axis of a chart.
 pub struct YAxis<'a> {
-    /// Unit of the values on the axis.
+    /// Unit of the values, which determines the format of their labels.
     pub unit: AxisUnit,
-    /// Values that the axis must contain.
+    /// Values that the axis must include.
     pub required_values: &'a [f64],
 }
 
@@ -95,7 +96,7 @@ pub struct PointLabel {
     pub x: f64,
     /// Position of the label on the vertical axis.
     pub y: f64,
-    /// The text of the label.
+    /// Text that is drawn at the point.
     pub text: &'static str,
     /// Role that determines the style of the label.
     pub role: Role,
@@ -107,15 +108,15 @@ pub struct Plot<'a> {
     pub curves: &'a [Curve],
     /// A band that is drawn behind the curves.
     pub band: Option<&'a Band>,
-    /// Position on the horizontal axis that a vertical line marks.
+    /// Horizontal position of a vertical line, if any.
     pub marked_x: Option<f64>,
-    /// The horizontal axis of the chart.
+    /// Labels and required values of the horizontal axis.
     pub x: &'a XAxis<'a>,
-    /// The vertical axis of the chart.
+    /// Unit and required values of the vertical axis.
     pub y: &'a YAxis<'a>,
 }
 
-/// Draws a chart of curves, or a text if there is no data.
+/// Draws a chart of curves, or [`Canvas::empty_chart_text`] if there is no data.
 pub fn draw_chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Curve], x: &XAxis<'_>, y: &YAxis<'_>) {
     Plot { curves: lines, band: None, marked_x: None, x, y }.draw(canvas, area);
 }
@@ -146,12 +147,12 @@ impl PlotFrame {
 }
 
 impl Plot<'_> {
-    /// Draws the chart, or a text if there is no data.
+    /// Draws the chart, or [`Canvas::empty_chart_text`] if there is no data.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         self.draw_with_labels(canvas, area, &[]);
     }
 
-    /// Draws the chart with labels above it. Labels outside of the axes are drawn at the edge.
+    /// Draws the chart with point labels on top. Labels outside of the axes are drawn at the edge.
     pub fn draw_with_labels(&self, canvas: &mut Canvas<'_>, area: Rect, signs: &[PointLabel]) {
         let area = area.intersection(canvas.buffer.area);
         if area.width < 16 || area.height < 4 {
@@ -165,7 +166,7 @@ impl Plot<'_> {
         let band = || self.band.iter().flat_map(|band| &band.bounds);
         let x =
             axis_bounds(points().map(|point| point.0).chain(band().map(|end| end.0)), self.x.required_values);
-        // A curve at zero has no shape that a band could flatten.
+        // Curves that are zero everywhere have no shape that a band could flatten.
         let limits = match points().all(|point| point.1 == 0.0) {
             true => [f64::NEG_INFINITY, f64::INFINITY],
             false => band_limits(axis_bounds(points().map(|point| point.1), self.y.required_values)),
@@ -244,11 +245,12 @@ impl Plot<'_> {
         }
     }
 
-    /// Draws the band within its limits. Arrows mark the columns in which the band exceeds its limits.
+    /// Draws the band within its limits. Arrows mark columns in which the band continues beyond a limit.
     fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &PlotFrame, limits: [f64; 2]) {
         let Some(band) = self.band else { return };
         for at in 0..frame.area.width {
-            // A column covers the band between both of its edges, so that neighboring columns of a steep band touch.
+            // A column covers the band from its left to its right edge, so that neighboring columns of a steep band
+            // touch.
             let edges = [f64::from(at) - 0.5, f64::from(at) + 0.5].map(|column| {
                 let share = column / f64::from(frame.area.width.saturating_sub(1).max(1));
                 band.bounds_at(frame.x[0] + (frame.x[1] - frame.x[0]) * share)
@@ -319,7 +321,7 @@ impl Plot<'_> {
     }
 }
 
-/// Returns distinct rows in the order of the wanted rows. Each row is as close to its wanted row as possible.
+/// Returns distinct rows in the order of the wanted rows, each as close to its wanted row as possible.
 fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
     let mut rows: Vec<u16> = Vec::with_capacity(wanted.len());
     for row in wanted {
@@ -335,14 +337,14 @@ fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
     rows
 }
 
-/// Returns the lower and the upper limit of a band around curves whose values have this range.
+/// Returns the lower and the upper limit of a band, for curves with this range of values.
 fn band_limits([least, most]: [f64; 2]) -> [f64; 2] {
     let distance = (MAX_BAND_DISTANCE * (most - least)).max(MIN_BAND_DISTANCE * most.abs().max(least.abs()));
     [least - distance, most + distance]
 }
 
-fn axis_bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {
-    let all = values.chain(holds.iter().copied());
+fn axis_bounds(values: impl Iterator<Item = f64>, required: &[f64]) -> [f64; 2] {
+    let all = values.chain(required.iter().copied());
     let (min, max) =
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), value| (min.min(value), max.max(value)));
     match min {
@@ -379,15 +381,15 @@ fn grid_line(width: u16) -> String {
     (0..width).map(|at| if at % 4 == 3 { '┈' } else { ' ' }).collect()
 }
 
-/// Returns zero as a required axis value if the values are near zero. For other values, an axis that includes zero
-/// would flatten the curve.
+/// Returns zero as a required axis value if the values are near zero. Otherwise, returns no value, because an axis that
+/// includes zero would flatten the curve.
 pub fn zero_if_near(values: impl Iterator<Item = f64> + Clone) -> &'static [f64] {
     let max = values.clone().fold(f64::NEG_INFINITY, f64::max);
     let min = values.fold(f64::INFINITY, f64::min);
     if min < 0.5 * max { &[0.0] } else { &[] }
 }
 
-/// Describes a series by its last value, its change, and its minimum and maximum, if they fit.
+/// Describes a series by its last value and, if they fit, its last change, minimum and maximum.
 pub fn summary(values: &[f64], write: &dyn Fn(f64) -> String, room: usize) -> String {
     let Some(now) = values.last() else { return "no data yet".to_owned() };
     let mut words = write(*now);

@@ -1,5 +1,5 @@
-//! The columns of a table that the user has hidden, moved or resized. Columns are named by their headings, so a layout
-//! stays valid if columns are added to the table or removed from it.
+//! The columns of a table that the user has hidden, moved or resized. A layout identifies columns by their headings, so
+//! it stays valid if columns are added or removed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,14 +14,14 @@ pub const MAX_COLUMN_WIDTH: u16 = 80;
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ColumnLayout {
-    /// Headings in display order. Columns that are not listed follow the column that precedes them in the original
+    /// Headings in display order. A column that is not listed follows the column that precedes it in the original
     /// order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub order: Vec<String>,
-    /// Headings of hidden columns.
+    /// Headings of the columns that the user has hidden.
     #[serde(skip_serializing_if = "BTreeSet::is_empty")]
     pub hidden: BTreeSet<String>,
-    /// Fixed widths by heading, in cells of the terminal. Other columns are as wide as their contents.
+    /// Widths that the user chose, by heading, in terminal cells. Other columns are as wide as their contents.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub widths: BTreeMap<String, u16>,
 }

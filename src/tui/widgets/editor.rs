@@ -1,4 +1,4 @@
-//! A multi-line editor, based on the text area of a library.
+//! A multi-line text editor, based on the text area of a library.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Position, Rect};
@@ -15,7 +15,7 @@ pub struct TextEditor {
     area: TextArea<'static>,
 }
 
-/// Editing keys with their labels and descriptions.
+/// Editing keys: key, label and description.
 pub const EDITING_KEYS: [(&str, &str, &str); 4] = [
     ("ctrl-u", "line start", "Remove the text to the start of the line."),
     ("ctrl-k", "line end", "Remove the text to the end of the line."),
@@ -23,7 +23,7 @@ pub const EDITING_KEYS: [(&str, &str, &str); 4] = [
     ("ctrl-z", "undo typing", "Undo the last change to the text."),
 ];
 
-/// Maximum length of the text, in bytes.
+/// Maximum length of an edited text, in bytes.
 pub const MAX_BYTES: usize = 256 << 10;
 
 impl Default for TextEditor {
@@ -47,7 +47,7 @@ impl TextEditor {
         TextEditor { area }
     }
 
-    /// Disables wrapping, for text with meaningful lines, such as code.
+    /// Disables wrapping, for text such as code, in which line breaks have a meaning.
     pub fn without_wrapping(mut self) -> TextEditor {
         self.area.set_wrap_mode(WrapMode::None);
         self
@@ -126,7 +126,7 @@ impl TextEditor {
         }
     }
 
-    /// Draws the editor. The cursor is drawn while the user edits the text.
+    /// Draws the editor. Shows the cursor while the user edits the text.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, editing: bool, hint: &str) {
         if area.is_empty() {
             return;

@@ -31,8 +31,8 @@ impl TextField {
         TextField { text, cursor, selected: false }
     }
 
-    /// Returns a field with a selected text. The first typed letter replaces the text, and backspace deletes it. Other
-    /// keys clear the selection.
+    /// Returns a field whose text is selected. The first typed letter replaces the text, and backspace deletes it.
+    /// Other keys only clear the selection.
     pub fn with_selected_text(text: impl Into<String>) -> TextField {
         TextField { selected: true, ..TextField::with_text(text) }
     }
@@ -52,13 +52,13 @@ impl TextField {
         self.text.is_empty()
     }
 
-    /// Returns a copy of the field with a dot for every letter.
+    /// Returns a copy of the field in which every letter is a dot.
     pub fn masked(&self) -> TextField {
         let dots = "•".repeat(self.text.graphemes(true).count());
         TextField { text: dots, cursor: self.cursor, selected: self.selected }
     }
 
-    /// Handles a key. Returns false if the key is not supported.
+    /// Handles a key. Returns false if the field does not use the key.
     pub fn handle_key(&mut self, key: &KeyEvent) -> bool {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         let removes = matches!(key.code, KeyCode::Backspace | KeyCode::Delete);
@@ -93,7 +93,7 @@ impl TextField {
         true
     }
 
-    /// Handles a key in a number field. Returns false for letters that numbers cannot contain.
+    /// Handles a key in a number field. Returns false if the key is a letter that a number cannot contain.
     pub fn handle_number_key(&mut self, key: &KeyEvent) -> bool {
         let plain = !key.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT);
         match key.code {

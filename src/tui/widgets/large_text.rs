@@ -7,7 +7,7 @@ use crate::theme::Role;
 
 /// Height of a letter, in points.
 const LETTER_HEIGHT_POINTS: usize = 5;
-/// Width of a letter with its gap, in points.
+/// Width of a letter and the gap after it, in points.
 pub const LETTER_WIDTH_POINTS: u16 = 4;
 
 /// Width and height of one point of a large letter.
@@ -59,7 +59,8 @@ pub fn draw_large_text(canvas: &mut Canvas<'_>, area: Rect, figure: &str, role: 
     }
 }
 
-/// Returns the bitmap of a letter: one value per row from top to bottom, with three points per row.
+/// Returns the bitmap of a letter: one value per row, from top to bottom. The lower three bits of a value are the
+/// points of the row.
 fn letter_bitmap(letter: char) -> [u8; LETTER_HEIGHT_POINTS] {
     match letter {
         '0' => [0b111, 0b101, 0b101, 0b101, 0b111],

@@ -1,6 +1,6 @@
 //! Actions of lists, tables and scrolled texts.
 
-/// An action of a list, a table or a scrolled text. The application converts its actions into list actions.
+/// An action of a list, a table or a scrolled text. The application maps its keys to these actions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListAction {
     /// Selects the row above.
@@ -19,9 +19,9 @@ pub enum ListAction {
     First,
     /// Moves the selection to the last row.
     Last,
-    /// Scrolls a text without a selection up by one row.
+    /// Scrolls a text by one row toward its start.
     ScrollUp,
-    /// Scrolls a text without a selection down by one row.
+    /// Scrolls a text by one row toward its end.
     ScrollDown,
     /// Sorts by the selected column.
     Sort,

@@ -1,4 +1,4 @@
-//! Rasters that draw curves as dots in terminal cells. Some markers have several dots per cell.
+//! Rasters, which draw curves as dots in terminal cells. Some markers have several dots per cell.
 
 use ratatui::layout::Rect;
 use ratatui::symbols::Marker;
@@ -14,7 +14,7 @@ pub struct Raster {
     marker: Marker,
     columns: usize,
     rows: usize,
-    /// Bits of the dots in each cell, and the role of the dot that was set last.
+    /// For each cell, the bits of its dots, and the role of the dot that was set last.
     cells: Vec<(u8, Role)>,
 }
 
@@ -34,7 +34,7 @@ impl Raster {
         }
     }
 
-    /// Sets a dot. Coordinates are counted from the top left corner.
+    /// Sets a dot. Coordinates count dots from the top left corner.
     fn set_dot(&mut self, x: usize, y: usize, role: Role) {
         let (across, down) = self.dots_per_cell();
         let (column, row) = (x / across, y / down);
@@ -50,8 +50,7 @@ impl Raster {
         *cell = (cell.0 | bit, role);
     }
 
-    /// Draws a line between two points. Coordinates are fractions of the width and the height from the lower left
-    /// corner.
+    /// Draws a line between two points. Coordinates are shares of the width and the height, from the lower left corner.
     pub fn draw_line(&mut self, from: (f64, f64), to: (f64, f64), role: Role) {
         let (from, to) = (self.dot_position(from), self.dot_position(to));
         let steps = (to.0 - from.0).abs().max((to.1 - from.1).abs()).ceil().max(1.0);

@@ -10,7 +10,7 @@ pub enum AxisUnit {
 }
 
 impl AxisUnit {
-    /// Formats round values with as many decimals as necessary to distinguish them: `$500k`, `$1M`, `$1.002M`.
+    /// Formats round values with only as many decimals as are necessary to distinguish them: `$500k`, `$1M`, `$1.002M`.
     pub fn labels(self, values: &[f64]) -> Vec<String> {
         let step = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         values.iter().map(|value| self.label(*value, step)).collect()
@@ -48,7 +48,7 @@ pub fn ticks([from, to]: [f64; 2], most: usize) -> Vec<f64> {
     (0..=(last - first) as usize).map(|at| (first + at as f64) * step + 0.0).collect()
 }
 
-/// Returns the distance between at most `most` ticks, or NaN if no ticks are possible.
+/// Returns the distance between ticks if there are at most `most`, or NaN if no ticks are possible.
 fn tick_step([from, to]: [f64; 2], most: usize) -> f64 {
     let span = to - from;
     if !span.is_finite() || span <= 0.0 || most == 0 {

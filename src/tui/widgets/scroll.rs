@@ -16,8 +16,7 @@ pub struct ScrollState {
 }
 
 impl ScrollState {
-    /// Scrolls by rows, by pages of `page` rows, or to the start or end. Returns whether the action was a scroll
-    /// action.
+    /// Scrolls by rows, by pages of `page` rows, or to the start or end. Returns false if the action does not scroll.
     pub fn handle_action(&mut self, action: impl Into<Option<ListAction>>, page: usize) -> bool {
         let from = self.first_row.min(self.max_first_row.get());
         let to = match action.into() {
@@ -38,7 +37,7 @@ impl ScrollState {
         self.first_row = usize::MAX;
     }
 
-    /// Returns the first visible row of a text with a number of rows, and draws arrows at the right border of the area
+    /// Returns the first visible row of a text that has `rows` rows. Also draws arrows at the right border of the area
     /// if rows above or below are not visible.
     pub fn scroll_rows(&self, canvas: &mut Canvas<'_>, area: Rect, rows: usize) -> usize {
         let from = self.clamped_first_row(rows.saturating_sub(area.height as usize));

@@ -2,8 +2,8 @@
 
 const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// Formats the last values as a sparkline. If all values are equal, the values are drawn at half height, or at the
-/// bottom if all values are zero.
+/// Formats the last values as a sparkline. If all values are equal, draws them at half height, or at the bottom if they
+/// are zero.
 pub fn sparkline(values: &[f64], width: usize) -> String {
     let shown = &values[values.len().saturating_sub(width)..];
     let finite = || shown.iter().copied().filter(|value| value.is_finite());
@@ -17,7 +17,7 @@ pub fn sparkline(values: &[f64], width: usize) -> String {
     shown.iter().map(level).collect()
 }
 
-/// Returns a bar that fills a share of a width.
+/// Returns a bar that fills a share (0 to 1) of a width.
 pub fn bar(share: f64, width: usize) -> String {
     let filled = (share.clamp(0.0, 1.0) * width as f64).round() as usize;
     "█".repeat(filled) + &"░".repeat(width - filled)

@@ -15,7 +15,7 @@ use crate::theme::Role;
 /// Minimum width of a truncated text column.
 const MIN_TEXT_WIDTH: u16 = 8;
 
-/// Width at the right end of the headings that is reserved for the number of columns that do not fit: ` +12 →`.
+/// Width reserved at the right end of the headings for the number of columns that do not fit: ` +12 →`.
 const COLUMN_MARK_WIDTH: u16 = 6;
 
 /// A column of a table.
@@ -25,11 +25,11 @@ pub struct TableColumn {
     pub title: String,
     /// Alignment of the heading and the cells.
     pub align: Align,
-    /// Maximum width in cells of the terminal.
+    /// Largest width of the column, in terminal cells.
     pub max_width: u16,
-    /// Width to which the column may shrink in favor of later columns.
+    /// Width to which the column may shrink if later columns need the space.
     pub min_width: u16,
-    /// Whether the column is either shown completely or not at all, because its texts contain numbers.
+    /// Whether the column is shown completely or not at all, because truncation would cut numbers in its texts.
     pub is_indivisible: bool,
 }
 
@@ -56,7 +56,7 @@ impl TableColumn {
         }
     }
 
-    /// Shows the column either completely or not at all.
+    /// Requires that the column is shown completely or not at all.
     pub fn indivisible(self) -> TableColumn {
         TableColumn { is_indivisible: true, ..self }
     }
@@ -77,7 +77,7 @@ impl TableColumn {
 pub struct TableCell {
     /// Displayed text of the cell.
     pub text: String,
-    /// Sort key of the cell if the cell is a number.
+    /// Number by which the cell is sorted; `None` if it is sorted by its text.
     pub number: Option<f64>,
     /// Role that determines the style of the cell.
     pub role: Role,
@@ -119,7 +119,7 @@ pub struct Table {
     filter: String,
     filter_field: Option<TextField>,
     selects_cells: bool,
-    /// Number of columns that stay visible when the columns are scrolled, in addition to the first column.
+    /// Number of columns, in addition to the first, that stay visible while the columns are scrolled.
     extra_pinned_columns: usize,
 }
 
@@ -136,7 +136,7 @@ impl Table {
         Table { selects_cells: true, ..self }
     }
 
-    /// Keeps the first `count` displayed columns visible when the columns are scrolled. The default is one column.
+    /// Keeps the first `count` displayed columns visible while the columns are scrolled. The default is one column.
     pub fn set_pinned_columns(&mut self, count: usize) {
         self.extra_pinned_columns = count.saturating_sub(1);
     }
@@ -271,7 +271,7 @@ impl Table {
         parts.join(" · ")
     }
 
-    /// Handles a list action. Returns false if the table does not support the action.
+    /// Handles a list action. Returns false if tables do not use the action.
     pub fn handle_action(&mut self, action: impl Into<Option<ListAction>>, page: u16) -> bool {
         let Some(action) = action.into() else { return false };
         let last = self.visible_rows.len().saturating_sub(1);
@@ -301,7 +301,7 @@ impl Table {
         true
     }
 
-    /// Selects the column at the position that `change` returns for the position of the selected column.
+    /// Selects the column at position `change(p)` in display order, if `p` is the position of the selected column.
     fn select_arranged_column(&mut self, change: impl Fn(usize) -> usize) {
         let place = change(self.arranged_position()).min(self.arranged.len().saturating_sub(1));
         self.column = self.arranged.get(place).copied().unwrap_or(0);
@@ -364,7 +364,7 @@ impl Table {
         self.select_arranged_column(|place| place);
     }
 
-    /// Draws the column headings and the rows. Clicks are registered with `pane` as the number of the pane.
+    /// Draws the column headings and the rows. Registers clicks under the pane number `pane`.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, pane: usize) {
         if area.height < 2 || area.width < 2 {
             return;
@@ -391,7 +391,8 @@ impl Table {
         }
     }
 
-    /// Draws the headings. Arrows show that further columns are to the left, and the number of columns to the right.
+    /// Draws the headings. An arrow shows that there are columns further to the left, and a number counts the columns
+    /// further to the right.
     fn draw_headings(
         &self,
         canvas: &mut Canvas<'_>,
@@ -446,8 +447,8 @@ impl Table {
         }
     }
 
-    /// Returns the widths of the arranged columns after they are shrunk to fit into a width. Columns with a fixed width
-    /// keep it.
+    /// Returns the widths of the arranged columns, shrunk to fit into a width. Columns with a fixed width are not
+    /// shrunk.
     fn fit_widths(&self, width: u16) -> Vec<u16> {
         let all: usize = self.arranged.iter().map(|at| usize::from(self.widths[*at]) + 2).sum();
         let mut missing = all.saturating_sub(usize::from(width) + 2).min(usize::from(u16::MAX)) as u16;
@@ -463,8 +464,9 @@ impl Table {
         self.arranged.iter().map(fitted).collect()
     }
 
-    /// Returns the columns that fit into a width, with their positions and widths. The pinned columns are always visible,
-    /// if the selected column fits next to them. Otherwise, only the first column is. The other columns are scrolled until the selected column is visible.
+    /// Returns the columns that fit into a width, with their positions and widths. The pinned columns are always
+    /// visible if the selected column fits next to them; otherwise, only the first column is. The other columns are
+    /// scrolled until the selected column is visible.
     fn visible_columns(&self, width: u16) -> Vec<(usize, (u16, u16))> {
         let widths = self.fit_widths(width);
         let selected = self.arranged_position();
@@ -485,8 +487,8 @@ impl Table {
         }
     }
 
-    /// Returns the pinned columns, and the columns from a position on that fit into a width, as positions in display
-    /// order. Columns that do not fit leave space for their number.
+    /// Returns the pinned columns and those columns from position `from` on that fit into a width, as positions in
+    /// display order. If columns do not fit, leaves space for their number.
     fn columns_from(
         &self,
         pinned: usize,

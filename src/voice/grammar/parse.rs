@@ -1,4 +1,4 @@
-//! Parses a grammar and checks that it can always be expanded.
+//! Parses a grammar and checks that every rule can be expanded in every context.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -77,13 +77,13 @@ fn flatten_rules(
 
 fn parse_alternative(rule: &str, text: &str, names: &DeclaredNames) -> Result<Alternative, GrammarError> {
     let wrong = |problem: String| GrammarError(format!("rule {rule}, \"{text}\": {problem}"));
-    let (needs, rest) = match text.strip_prefix('(').and_then(|rest| rest.split_once(") ")) {
-        Some((needs, rest)) => (parse_conditions(needs, names).map_err(wrong)?, rest),
+    let (conditions, rest) = match text.strip_prefix('(').and_then(|rest| rest.split_once(") ")) {
+        Some((conditions, rest)) => (parse_conditions(conditions, names).map_err(wrong)?, rest),
         None => (Vec::new(), text),
     };
     let mut reader = PartParser { rest, names };
     let parts = reader.parse_parts(false).map_err(wrong)?;
-    Ok(Alternative { required_tags: needs, parts })
+    Ok(Alternative { required_tags: conditions, parts })
 }
 
 fn parse_conditions(text: &str, names: &DeclaredNames) -> Result<Vec<(String, bool)>, String> {
@@ -164,7 +164,7 @@ impl PartParser<'_> {
     }
 }
 
-/// Checks that every rule has an alternative without tags and optional values, and that no rule contains itself.
+/// Checks that every rule has an alternative without tags or optional values, and that no rule contains itself.
 fn check_always_expandable(
     rules: &BTreeMap<String, Vec<Alternative>>,
     names: &DeclaredNames,

@@ -1,4 +1,4 @@
-//! Fixes articles, spaces and capitals of expanded text.
+//! Corrects articles, spaces and capitals in expanded text.
 
 /// Inserts the correct articles, removes extra spaces, and capitalizes sentences.
 pub fn polish(text: &str) -> String {
@@ -64,22 +64,22 @@ fn fix_spaces(text: &str) -> String {
 
 fn fix_capitals(text: &str) -> String {
     let mut polished = String::with_capacity(text.len());
-    let mut begins = true;
-    let mut ended = false;
+    let mut is_sentence_start = true;
+    let mut follows_end_mark = false;
     for character in text.chars() {
-        if begins && character.is_alphabetic() {
+        if is_sentence_start && character.is_alphabetic() {
             polished.extend(character.to_uppercase());
-            begins = false;
+            is_sentence_start = false;
         } else {
             // A sentence that starts with a digit, `@` or `#` is not capitalized.
-            begins &= !character.is_alphanumeric() && !matches!(character, '@' | '#');
+            is_sentence_start &= !character.is_alphanumeric() && !matches!(character, '@' | '#');
             polished.push(character);
         }
         match character {
-            '.' | '!' | '?' => ended = true,
-            ' ' | '\n' if ended => (begins, ended) = (true, false),
+            '.' | '!' | '?' => follows_end_mark = true,
+            ' ' | '\n' if follows_end_mark => (is_sentence_start, follows_end_mark) = (true, false),
             '"' | ')' | '\'' => {}
-            _ => ended = false,
+            _ => follows_end_mark = false,
         }
     }
     polished

@@ -4,10 +4,10 @@ use super::context::{JudgeContext, ReaderGroup};
 use super::features::Features;
 use super::lexicon::Lexicon;
 
-/// A claim of a post and the verdict of a group.
+/// A claim that a post makes, with the verdict of one group of readers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Claim {
-    /// Name of the claim.
+    /// Name of the claim, one of `CLAIM_NAMES`.
     pub name: &'static str,
     /// Whether the claim is true, or `None` if the readers do not know.
     pub verdict: Option<bool>,
@@ -15,7 +15,7 @@ pub struct Claim {
 
 const CLAIM_NAMES: [&str; 6] = ["price_down", "quality_up", "reliability", "speed", "support", "limits"];
 
-/// Returns the claims of a post, each with the verdict of a group.
+/// Returns the claims of a post, each with the verdict of one group of readers.
 pub fn evaluate_claims(
     features: &Features,
     readers: &ReaderGroup,
@@ -75,8 +75,8 @@ fn verdict(
     }
 }
 
-/// Returns the largest number before the words customer, user or subscriber. The suffix `k` means a thousand, `m` a
-/// million.
+/// Returns the largest number directly before the word customer, user or subscriber. The suffix `k` means a thousand,
+/// `m` a million.
 fn claimed_audience(normal: &str) -> Option<f64> {
     let words = ["customer", "user", "subscriber"];
     let ends = words.iter().flat_map(|word| normal.match_indices(word)).map(|(at, _)| at);

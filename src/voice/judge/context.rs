@@ -72,7 +72,7 @@ pub enum LiveEvent {
 }
 
 impl LiveEvent {
-    /// Returns the name of the event in the reasons of a judgement.
+    /// Returns the name that the reasons of a judgement use for the event.
     pub fn id(self) -> &'static str {
         match self {
             LiveEvent::Outage => "outage",
@@ -153,8 +153,8 @@ fn service_problems(world: &World, params: &Params) -> (f64, f64, f64) {
             short += u32::from(factor < 1.0);
         }
     }
-    let of = |part: u32, whole: u32| if whole == 0 { 0.0 } else { f64::from(part) / f64::from(whole) };
-    (of(open, count), of(days, open), of(short, count))
+    let ratio = |part: u32, whole: u32| if whole == 0 { 0.0 } else { f64::from(part) / f64::from(whole) };
+    (ratio(open, count), ratio(days, open), ratio(short, count))
 }
 
 fn research_ages(world: &World) -> impl Iterator<Item = u32> {

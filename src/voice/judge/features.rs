@@ -12,15 +12,15 @@ pub struct Features {
     pub topics: Vec<f64>,
     /// Count of numbers and amounts of money.
     pub numbers: u32,
-    /// How specific the post is, 0..=1.
+    /// Specificity of the post, 0..=1.
     pub specificity: f64,
     /// Amount of exaggerated promises, 0..=1.
     pub absolutes: f64,
     /// Amount of advertising language, 0..=1.
     pub buzzwords: f64,
-    /// How casual the style is, 0..=1.
+    /// Casualness of the style, 0..=1.
     pub casual: f64,
-    /// How technical the style is, 0..=1.
+    /// Amount of technical language, 0..=1.
     pub technical: f64,
     /// Whether the post apologizes.
     pub has_apology: bool,
@@ -100,7 +100,8 @@ pub(super) fn indicator(holds: bool) -> f64 {
 }
 
 fn casualness(content: &str, slang: u32, features: &FeatureWeights) -> f64 {
-    let count = |of: &dyn Fn(char) -> bool| content.chars().filter(|c| of(*c)).count() as u32;
+    let count =
+        |matches_kind: &dyn Fn(char) -> bool| content.chars().filter(|c| matches_kind(*c)).count() as u32;
     let signs = |each: f64, count: u32| each * f64::from(count.min(features.signs_counted));
     let shouted = content.split(|c: char| !c.is_alphanumeric()).filter(|word| {
         word.chars().count() >= features.capitals_letters && word.chars().all(|c| c.is_uppercase())

@@ -15,8 +15,8 @@ pub type PatternList = Vec<WordPattern>;
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lexicon {
-    /// Names of the topics in their fixed order. If two topics are equally strong, the topic that is first in this
-    /// order leads.
+    /// Names of the topics in their fixed order. If two topics are equally strong, the first in this order is the
+    /// leading topic.
     topic_order: Vec<String>,
     /// Word lists of the topics, in topic order.
     #[serde(deserialize_with = "lists")]
@@ -31,9 +31,9 @@ pub struct Lexicon {
     pub events: Events,
     /// Importance of each current event to a group.
     pub salience: Salience,
-    /// Weights with which words count towards features.
+    /// Weights of the words in each feature.
     pub features: Features,
-    /// Weights with which features count towards a score.
+    /// Weights of the features in the score of a group.
     pub terms: Terms,
     /// Preferences of each group.
     profiles: IndexMap<String, Profile>,
@@ -113,13 +113,13 @@ words! {
     absolutes,
     /// Advertising words.
     buzzwords,
-    /// Casual words.
+    /// Casual words, such as slang and abbreviations.
     slang,
-    /// Engineering terms.
+    /// Terms from engineering, such as `api` and `latency`.
     tech,
-    /// Words for completed actions.
+    /// Words for actions, such as `fixed` and `launched`.
     actions,
-    /// Words for points in time.
+    /// Words for points and periods in time, such as `today` and `week`.
     times,
     /// Words of an apology.
     apology,
@@ -139,7 +139,7 @@ words! {
     negative,
     /// Words that address the reader.
     you,
-    /// Function words.
+    /// Function words, such as articles and prepositions.
     function,
 }
 
@@ -255,7 +255,7 @@ numbers! {
 }
 
 numbers! {
-    /// Weights with which words count towards features.
+    /// Weights of the words in each feature.
     Features {
         topic_first: f64,
         topic_more: f64,
@@ -289,7 +289,7 @@ numbers! {
 }
 
 numbers! {
-    /// Weights with which features count towards a score.
+    /// Weights of the features in the score of a group.
     Terms {
         receptive: f64,
         topics: f64,

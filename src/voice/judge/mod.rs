@@ -1,4 +1,4 @@
-//! The judge of the player's posts: returns one reaction per group with reasons
+//! The judge of the player's posts: returns the reaction of each group, with reasons
 //! (docs/mechanics/market/social/judge.md).
 //!
 //! The judge models readers who either ignore or answer a post. Reactions are within -1..=1. Reactions of at least
@@ -55,11 +55,11 @@ pub struct OriginalPost<'a> {
 /// The reaction of a group to a post, with reasons.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
-    /// The group that reacts.
+    /// The group of readers that reacts.
     pub group: Group,
     /// The reaction, -1..=1, rounded to hundredths.
     pub effect: f64,
-    /// Terms of the reaction that are not zero, in a fixed order, before multiplication by the group's factor.
+    /// Nonzero terms of the reaction, in a fixed order, before multiplication by the group's factor.
     pub terms: Vec<ScoreTerm>,
     /// The reason that a language model gave, if a model judged the post.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -110,7 +110,7 @@ impl Judgement {
     }
 }
 
-/// Data about a post that all groups share.
+/// Data about a post that is the same for all groups.
 struct SharedPostData<'a> {
     features: Features,
     /// The post to which the player replies, with its features.

@@ -44,7 +44,7 @@ fn compress(raw: f64, knee: f64) -> f64 {
 
 impl GroupJudge<'_> {
     fn terms(&self) -> Vec<ScoreTerm> {
-        let law = &self.case.lexicon.terms;
+        let weights = &self.case.lexicon.terms;
         let features = &self.case.features;
         let profile = self.profile;
         let (fit, topics) = self.topic_fit();
@@ -52,49 +52,52 @@ impl GroupJudge<'_> {
         let technical = self.has_numeric_comparison();
         let contradicted = self.claim_names(Some(false));
         let supported = if contradicted.is_empty() { self.claim_names(Some(true)) } else { Vec::new() };
-        let spoilt = !contradicted.is_empty()
+        let is_spoiled = !contradicted.is_empty()
             || features.defensive
             || features.has_misconduct
             || (features.attacks_competitors && !technical);
         let (unbelieved, hype) =
             (self.false_claim_penalty_share(&contradicted), self.hype_penalty(!supported.is_empty()));
-        let bashing =
-            if technical { law.bashing_with_numbers } else { law.bashing + law.bashing_formal * profile.f };
-        let repeated = (self.case.overlap - law.repetition_from) / (1.0 - law.repetition_from);
+        let bashing = if technical {
+            weights.bashing_with_numbers
+        } else {
+            weights.bashing + weights.bashing_formal * profile.f
+        };
+        let repeated = (self.case.overlap - weights.repetition_from) / (1.0 - weights.repetition_from);
         let mut terms = vec![
-            term("receptive", law.receptive, Vec::new()),
-            reducible_term("topics", law.topics * fit, spoilt, topics, law.spoil),
+            term("receptive", weights.receptive, Vec::new()),
+            reducible_term("topics", weights.topics * fit, is_spoiled, topics, weights.spoil),
             reducible_term(
                 "specific",
-                law.specific * features.specificity * fit.max(0.0),
-                spoilt,
+                weights.specific * features.specificity * fit.max(0.0),
+                is_spoiled,
                 Vec::new(),
-                law.spoil,
+                weights.spoil,
             ),
-            reducible_term("tone", law.tone * self.tone_match(), spoilt, Vec::new(), law.spoil),
-            reducible_term("timing", law.timing * timing, spoilt, event, law.spoil),
+            reducible_term("tone", weights.tone * self.tone_match(), is_spoiled, Vec::new(), weights.spoil),
+            reducible_term("timing", weights.timing * timing, is_spoiled, event, weights.spoil),
             reducible_term(
                 "accountable",
-                law.accountable * self.accountability(),
-                spoilt,
+                weights.accountable * self.accountability(),
+                is_spoiled,
                 Vec::new(),
-                law.spoil,
+                weights.spoil,
             ),
-            term("claims_true", law.claims_true * indicator(!supported.is_empty()), supported),
-            term("claims_false", law.claims_false * unbelieved, contradicted),
+            term("claims_true", weights.claims_true * indicator(!supported.is_empty()), supported),
+            term("claims_false", weights.claims_false * unbelieved, contradicted),
             term("hype", hype, Vec::new()),
             term("hard_sell", self.hard_sell_penalty(), Vec::new()),
             term(
                 "conduct",
-                (law.conduct + law.conduct_formal * profile.f) * indicator(features.has_misconduct),
+                (weights.conduct + weights.conduct_formal * profile.f) * indicator(features.has_misconduct),
                 Vec::new(),
             ),
             term("bashing", bashing * indicator(features.attacks_competitors), Vec::new()),
-            term("stuffing", law.stuffing * features.keyword_stuffing, Vec::new()),
-            term("repetition", law.repetition * repeated.max(0.0), Vec::new()),
+            term("stuffing", weights.stuffing * features.keyword_stuffing, Vec::new()),
+            term("repetition", weights.repetition * repeated.max(0.0), Vec::new()),
         ];
         terms.extend(self.reply_terms());
-        terms.push(term("defensive", law.defensive * indicator(features.defensive), Vec::new()));
+        terms.push(term("defensive", weights.defensive * indicator(features.defensive), Vec::new()));
         terms.retain(|term| term.value != 0.0);
         terms
     }
@@ -140,11 +143,11 @@ impl GroupJudge<'_> {
 
     /// Returns how well the tone fits the group, -1..=1.
     fn tone_match(&self) -> f64 {
-        let (law, features, profile) = (&self.case.lexicon.terms, &self.case.features, self.profile);
-        let casual = law.casual * (profile.m - law.casual_neutral) * features.casual;
-        let formal = law.formal * profile.f * (1.0 - features.casual);
+        let (weights, features, profile) = (&self.case.lexicon.terms, &self.case.features, self.profile);
+        let casual = weights.casual * (profile.m - weights.casual_neutral) * features.casual;
+        let formal = weights.formal * profile.f * (1.0 - features.casual);
         let technical =
-            (law.tech_liked * profile.t - law.tech_disliked * (1.0 - profile.t)) * features.technical;
+            (weights.tech_liked * profile.t - weights.tech_disliked * (1.0 - profile.t)) * features.technical;
         (casual + formal + technical - profile.a * features.buzzwords).clamp(-1.0, 1.0)
     }
 
@@ -176,10 +179,10 @@ impl GroupJudge<'_> {
     /// Returns the recent outage or price increase that a post about a release, deal or price ignores.
     fn ignored_event(&self) -> Option<LiveEvent> {
         let (features, lexicon) = (&self.case.features, self.case.lexicon);
-        let cheerful = ["release", "deal", "price"]
+        let is_promotional = ["release", "deal", "price"]
             .iter()
             .any(|topic| features.mentions_topic(lexicon.topic_index(topic)));
-        if !cheerful || features.has_apology {
+        if !is_promotional || features.has_apology {
             return None;
         }
         let answers = [lexicon.topic_index("reliability"), lexicon.topic_index("transparency")];
@@ -210,32 +213,34 @@ impl GroupJudge<'_> {
     }
 
     fn salience(&self, event: LiveEvent) -> f64 {
-        let law = &self.case.lexicon.salience;
+        let weights = &self.case.lexicon.salience;
         let weight = |topic: &str| self.profile.weight(topic);
         match event {
-            LiveEvent::Outage if weight("reliability") >= law.minded => law.outage_minded,
-            LiveEvent::Outage => law.outage,
-            LiveEvent::PriceUp => law.price_up * weight("price").max(weight("deal")).max(law.price_up_least),
-            LiveEvent::Issues => law.issues,
-            LiveEvent::Quota => law.quota,
-            LiveEvent::Competitor => law.rival,
-            LiveEvent::MacroDown => law.macro_down,
-            LiveEvent::MacroUp => law.macro_up,
-            LiveEvent::Research => law.research,
+            LiveEvent::Outage if weight("reliability") >= weights.minded => weights.outage_minded,
+            LiveEvent::Outage => weights.outage,
+            LiveEvent::PriceUp => {
+                weights.price_up * weight("price").max(weight("deal")).max(weights.price_up_least)
+            }
+            LiveEvent::Issues => weights.issues,
+            LiveEvent::Quota => weights.quota,
+            LiveEvent::Competitor => weights.rival,
+            LiveEvent::MacroDown => weights.macro_down,
+            LiveEvent::MacroUp => weights.macro_up,
+            LiveEvent::Research => weights.research,
         }
     }
 
-    /// Returns how far the post takes responsibility for current problems. The value is negative if the post apologizes
-    /// although there is no problem.
+    /// Returns to what extent the post takes responsibility for current problems. The value is negative if the post
+    /// apologizes although there is no problem.
     fn accountability(&self) -> f64 {
         let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];
-        let trouble = to_answer.into_iter().any(|event| self.case.context.event_age(event).is_some());
-        if trouble && (features.has_apology || features.names_cause) {
+        let has_problem = to_answer.into_iter().any(|event| self.case.context.event_age(event).is_some());
+        if has_problem && (features.has_apology || features.names_cause) {
             let elements =
                 [features.has_apology, features.names_cause, features.names_remedy, features.names_time];
             terms.account_step * elements.into_iter().map(indicator).sum::<f64>()
-        } else if features.has_apology && !trouble {
+        } else if features.has_apology && !has_problem {
             terms.needless_apology
         } else {
             0.0
@@ -299,15 +304,15 @@ fn term(name: &'static str, value: f64, because: Vec<String>) -> ScoreTerm {
     ScoreTerm { name: name.into(), value, because }
 }
 
-/// Creates a term whose positive value is reduced if the post is dishonest or offensive.
+/// Creates a term. If the post is dishonest or offensive (`is_spoiled`), a positive value is multiplied by `share`.
 fn reducible_term(
     name: &'static str,
     value: f64,
-    spoilt: bool,
+    is_spoiled: bool,
     because: Vec<String>,
     share: f64,
 ) -> ScoreTerm {
-    term(name, if spoilt && value > 0.0 { value * share } else { value }, because)
+    term(name, if is_spoiled && value > 0.0 { value * share } else { value }, because)
 }
 
 #[cfg(test)]

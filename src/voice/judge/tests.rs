@@ -14,7 +14,7 @@ fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")
 }
 
-/// The context on which all worked examples are based.
+/// Returns the context on which all worked examples are based.
 fn default_context() -> JudgeContext {
     let count = |id: &str| match id {
         "S1" => 4000,

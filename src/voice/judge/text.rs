@@ -1,6 +1,6 @@
 //! Tokenization and word matching for posts.
 
-/// A text that is prepared for pattern matching.
+/// A normalized text with its tokens, against which patterns are matched.
 #[derive(Debug, Clone)]
 pub struct TokenizedText {
     /// The text in lowercase, with ASCII quotes and dashes.
@@ -9,19 +9,19 @@ pub struct TokenizedText {
     tokens: Vec<String>,
 }
 
-/// A pattern of a word list.
+/// A pattern in a word list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum WordPattern {
     /// Matches tokens with this prefix.
     Prefix(String),
     /// Matches this token only.
     Word(String),
-    /// Matches a phrase anywhere in the text. The patterns of its words determine the tokens that it covers.
+    /// Matches a phrase anywhere in the text. The patterns of the phrase's words determine the tokens that it covers.
     Phrase(String, Vec<WordPattern>),
 }
 
 impl WordPattern {
-    /// Parses a pattern of a word list.
+    /// Parses a pattern in the notation of the word lists: `word`, `prefix*` or a phrase.
     pub fn parse(text: &str) -> WordPattern {
         if text.contains(' ') || text.starts_with(['/', '%', '#']) || text.ends_with('%') {
             return WordPattern::phrase(text);
@@ -43,7 +43,7 @@ impl WordPattern {
         WordPattern::Phrase(text.trim_end_matches('*').to_owned(), words.map(entry).collect())
     }
 
-    /// Returns whether the pattern matches a token. Ignores a leading # of the token.
+    /// Returns whether the pattern matches a token. Ignores a leading `#` in the token.
     fn matches_token(&self, token: &str) -> bool {
         let token = token.trim_start_matches('#');
         match self {

@@ -1,4 +1,4 @@
-//! Validation that all language model responses pass: a JSON array of printable texts.
+//! Validation that every response of a language model must pass: a JSON array of printable texts.
 
 use serde_json::Value;
 use unicode_width::UnicodeWidthChar;

@@ -61,13 +61,13 @@ impl RecordedModelSettings {
     /// Describes the tasks of the model in the run, for example `llama3 at 127.0.0.1:11434 rewords posts and judges the
     /// player's posts`.
     pub fn describe(&self) -> String {
-        let deeds = match (self.words, self.judge) {
+        let tasks = match (self.words, self.judge) {
             (true, true) => "rewords posts and judges the player's posts",
             (_, false) => "rewords posts",
             (false, true) => "judges the player's posts",
         };
         format!(
-            "{} at {} {deeds}",
+            "{} at {} {tasks}",
             escape_control_characters(&self.model),
             escape_control_characters(&self.host)
         )

@@ -83,9 +83,9 @@ fn number_set(text: &str) -> BTreeSet<String> {
     let characters: Vec<char> = text.chars().collect();
     let (mut found, mut number) = (BTreeSet::new(), String::new());
     for (at, letter) in characters.iter().enumerate() {
-        let goes_on = characters.get(at + 1).is_some_and(|next| next.is_numeric());
-        let joins = matches!(letter, '.' | ',') && !number.is_empty() && goes_on;
-        if letter.is_numeric() || joins {
+        let digit_follows = characters.get(at + 1).is_some_and(|next| next.is_numeric());
+        let is_separator = matches!(letter, '.' | ',') && !number.is_empty() && digit_follows;
+        if letter.is_numeric() || is_separator {
             number.push(*letter);
         } else if !number.is_empty() {
             found.insert(std::mem::take(&mut number));

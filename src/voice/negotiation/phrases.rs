@@ -134,7 +134,7 @@ const PLAN_OPENINGS: &[&str] = &[
     "We would like to adjust our subscription.",
 ];
 
-/// Phrases of a subscriber that asks for a price of a higher plan.
+/// Phrases of a subscriber that asks for the price of a higher-priced plan.
 pub(super) const UPGRADE: Phrases = Phrases {
     openings: PLAN_OPENINGS,
     cores: &[
@@ -149,7 +149,7 @@ pub(super) const UPGRADE: Phrases = Phrases {
     ],
 };
 
-/// Phrases of a subscriber that asks for a price of a lower plan.
+/// Phrases of a subscriber that asks for the price of a lower-priced plan.
 pub(super) const DOWNGRADE: Phrases = Phrases {
     openings: PLAN_OPENINGS,
     cores: &[

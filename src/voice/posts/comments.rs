@@ -1,4 +1,4 @@
-//! Comments on the player's posts: one or two sentences in the style of a group, with the judge's reason.
+//! Comments on the player's posts: one or two sentences in the style of a group that give the judge's reason.
 
 use std::borrow::Cow;
 use std::sync::LazyLock;
@@ -42,8 +42,8 @@ fn context(group: Group, effect: f64, judgement: Option<&Judgement>) -> Context 
 /// Returns the name of the largest term that has the same sign as the reaction, and the topic of the post.
 fn reason(effect: f64, judgement: Option<&Judgement>) -> (Cow<'static, str>, String) {
     let leading = judgement.map(Judgement::terms_by_size).unwrap_or_default();
-    let of_kind = |name: &str| leading.iter().find(|term| term.name == name);
-    let topic = of_kind("topics").and_then(|term| term.because.first()).cloned();
+    let term_named = |name: &str| leading.iter().find(|term| term.name == name);
+    let topic = term_named("topics").and_then(|term| term.because.first()).cloned();
     let pulls = leading.iter().find(|term| term.value * effect > 0.0 && term.name != "receptive");
     let Some(term) = pulls else { return ("topics".into(), topic.unwrap_or_default()) };
     let subject = match term.name.as_ref() {

@@ -18,7 +18,7 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
 /// Number of days for which an author counts as a new customer.
 const NEW_CUSTOMER_DAYS: u32 = 30;
 const VETERAN_AFTER_DAYS: u32 = 120;
-/// Among casual authors, one in this number writes without capital letters.
+/// One in this many casual authors writes without capital letters.
 const LOWERCASE_AUTHOR_INTERVAL: u32 = 9;
 
 pub(super) fn draft_post(context: &Context, choose: Chooser<'_>) -> String {
@@ -75,9 +75,9 @@ pub(super) fn context(author: &PostAuthor, opinion: &Opinion, tone: Sentiment, p
         .with_tag("company", company)
         .with_tag("skilled", wording::is_skilled(author, params))
         .with_tag("senior", wording::is_senior(author, params))
-        .with_tag("also_down", also(opinion.troubles.outage, PostCause::Outage))
-        .with_tag("also_waiting", also(opinion.troubles.issue, PostCause::Issue))
-        .with_tag("also_short", also(opinion.troubles.quota, PostCause::Quota))
+        .with_tag("also_down", also(opinion.customer_problems.outage, PostCause::Outage))
+        .with_tag("also_waiting", also(opinion.customer_problems.issue, PostCause::Issue))
+        .with_tag("also_short", also(opinion.customer_problems.quota, PostCause::Quota))
         .with_tag("unanswered", matches!(opinion.cause, PostCause::Lost { unanswered: true, .. }))
         .with_tag("wanted_to_leave", kind == Some("churn_prevention"))
         .with_tag("new_terms", kind == Some("renegotiation"))
@@ -140,13 +140,13 @@ pub(super) mod tests {
     use novamind_world::identifiers::{Group, Plan};
 
     pub(in crate::posts) fn author(group: Group) -> PostAuthor {
-        PostAuthor { customer: 9, group, n: 4, persona: PersonaPicks::default(), company: 0 }
+        PostAuthor { customer: 9, group, n: 4, persona: PersonaPicks::default(), enterprise_seats: 0 }
     }
 
     pub(in crate::posts) fn opinion(cause: PostCause, theme: Theme) -> Opinion {
         Opinion {
             cause,
-            troubles: CustomerProblems::default(),
+            customer_problems: CustomerProblems::default(),
             theme,
             days_subscribed: 80,
             plan: Some(Plan::B),

@@ -1,6 +1,6 @@
 //! Wording of posts and comments (docs/mechanics/market/social/texts.md).
 //!
-//! Facts contain the reason for a post, and grammars turn the reason into text. A post contains only what its author
+//! Each post has a recorded reason, which the grammars turn into text. A post contains only what its author
 //! can know: causes, opinions, prices and plans, but no hidden numbers. The wording uses a separate random stream and
 //! does not affect the world.
 
@@ -20,7 +20,7 @@ use novamind_world::events::{Post, PostSubject};
 use novamind_world::params::Params;
 use novamind_world::random::{Part, Streams};
 
-/// Writes posts in order and remembers recent posts to avoid repetition.
+/// A writer of posts that remembers the recent posts to avoid repetition. Posts must be written in order.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct PostWriter {
     recent: RecentPosts,

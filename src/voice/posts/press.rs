@@ -29,7 +29,7 @@ const ECONOMY_VIEWS: [&str; 11] = [
 const COMPETITOR_VIEWS: [&str; 7] =
     ["analyst", "journalist", "watcher", "insider", "investor", "reviewer", "evaluator"];
 
-/// Returns a context for press posts in which most values are empty.
+/// Returns a context for press posts. All values other than `way` and `view` are empty.
 fn context(way: &str, view: &str) -> Context {
     let empty = ["trend", "seen", "pmi", "change", "name", "severity", "estimate"];
     let context = Context::default().with("way", way).with("view", view);
@@ -58,7 +58,7 @@ pub(super) fn write_reading_post(reading: &Reading, choose: Chooser<'_>) -> Stri
     GRAMMAR.expand("reading", &context, choose)
 }
 
-/// Writes a post about the economy. Every second post names today's PMI.
+/// Writes a post about the economy. On average, every second post names today's PMI.
 pub(super) fn write_economy_post(trend: Trend, pmi: f64, view: u8, choose: Chooser<'_>) -> String {
     let view = ECONOMY_VIEWS[usize::from(view) % ECONOMY_VIEWS.len()];
     let with_number = choose(2) == 0;

@@ -69,9 +69,9 @@ impl RecentPosts {
         if self.0.iter().any(|other| other.text == text) {
             return MAX_DRAFTS;
         }
-        let was_read =
+        let is_repeated =
             |sentence: &&str| self.0.iter().any(|other| other.sentences.iter().any(|it| it == sentence));
-        let known = sentences(&text).filter(was_read).count();
+        let known = sentences(&text).filter(is_repeated).count();
         let alike =
             self.0.iter().rev().take(REMEMBERED_OPENINGS).any(|other| opening(&text).eq(&other.opening));
         2 * known + usize::from(alike)

@@ -5,7 +5,7 @@ use novamind_world::events::PostAuthor;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Style in which the members of a group write.
+/// The style in which the members of a group write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpeechRegister {
     /// Casual style, as among friends.
@@ -109,7 +109,7 @@ pub fn industry(author: &PostAuthor, params: &Params) -> String {
     label_words(&params.personas.group[author.group.index()].industry, author.persona.0[0])
 }
 
-/// Returns whether an author's profile has a high technical skill.
+/// Returns whether an author's profile states a high technical skill.
 pub fn is_skilled(author: &PostAuthor, params: &Params) -> bool {
     let axis = if author.group.is_enterprise() {
         (&params.personas.enterprise.tech_savvy, author.persona.0[2])
@@ -119,7 +119,7 @@ pub fn is_skilled(author: &PostAuthor, params: &Params) -> bool {
     ["advanced", "expert"].contains(&label_words(axis.0, axis.1).as_str())
 }
 
-/// Returns whether an individual's profile has long work experience.
+/// Returns whether an individual's profile states long work experience. Always `false` for enterprises.
 pub fn is_senior(author: &PostAuthor, params: &Params) -> bool {
     let levels = &params.personas.individual.experience_levels;
     !author.group.is_enterprise()

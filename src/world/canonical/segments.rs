@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use super::CanonicalHasher;
 
-/// Number of input bytes of one subtree of the hash. The number is a power of two, and the bytes fit into the cache of
-/// a processor core.
+/// Size of one subtree of the hash, in input bytes. The size is a power of two, and a subtree fits into the cache of a
+/// processor core.
 const SUBTREE_BYTES: usize = 1 << 20;
 
 /// Number of subtrees that one thread hashes in sequence to reuse its buffer. The number is lower for small inputs, so
@@ -126,7 +126,7 @@ mod tests {
             let hash_segment =
                 |text| HashSegment::new(Vec::len(text), move |hasher| hasher.append_bytes(text));
             let segments: Vec<HashSegment<'_>> = texts.iter().map(hash_segment).collect();
-            assert_eq!(hash_segments(&segments), blake3::hash(&texts.concat()), "{count} stretches");
+            assert_eq!(hash_segments(&segments), blake3::hash(&texts.concat()), "{count} segments");
         }
     }
 

@@ -10,7 +10,7 @@ use crate::identifiers::Plan;
 
 use super::curve::Curve;
 
-/// Number of customer numbers per block.
+/// Number of consecutive sequence numbers that one block covers.
 pub const CUSTOMERS_PER_BLOCK: u32 = 1024;
 
 macro_rules! columns {
@@ -30,7 +30,7 @@ macro_rules! columns {
 
         impl $Block {
             /// Creates an empty block with capacity for `rows` rows.
-            pub fn with_room(rows: usize) -> $Block {
+            pub fn with_capacity(rows: usize) -> $Block {
                 $Block { $($column: Vec::with_capacity(rows),)* }
             }
 
@@ -117,11 +117,11 @@ columns! {
     row Subscriber {
         /// Sequence number of the customer within the group, from 1.
         n: u32,
-        /// Customer number of the subscriber.
+        /// Customer number, which is unique across all groups.
         customer: u32,
-        /// Number of the subscription.
+        /// Number of the subscription, which is unique across all groups.
         subscription: u32,
-        /// Plan of the subscription.
+        /// Current plan. A renewal or a deal can change it.
         plan: Plan,
         /// Billing day modulo 30: the subscriber is billed on days with this remainder.
         billing_day: u8,
@@ -135,9 +135,9 @@ columns! {
         steepness_right: f64,
         /// Budget including individual drift, dollars per month.
         c_max: f64,
-        /// Minimum quality including individual drift.
+        /// Quality required at a price near 0, including individual drift.
         q_min: f64,
-        /// Maximum quality including individual drift.
+        /// Quality required above the budget, including individual drift.
         q_max: f64,
         /// Mean demand, units per seat per day.
         usage_demand: f64,
@@ -145,7 +145,7 @@ columns! {
         ads_quality_sensitivity: f64,
         /// Ad revenue at full strength, dollars per seat per day.
         ads_return_sensitivity: f64,
-        /// Number of seats, with a fraction: seats of enterprises drift, and only whole seats count.
+        /// Number of seats. The seats of enterprises drift and have a fraction, but only whole seats count.
         seats: f64,
         /// Price before discounts, dollars per seat per month.
         listed_price: f64,

@@ -3,7 +3,7 @@
 
 use crate::params::{Params, Participation, RequiredQuality};
 
-/// A customer's participation curve.
+/// The parameters of a customer's participation curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curve {
     /// Steepness of the lower half, 0.2..=6.
@@ -14,7 +14,7 @@ pub struct Curve {
     pub c_max: f64,
     /// Quality required at a price near 0.
     pub q_min: f64,
-    /// Quality required at prices of the budget or more.
+    /// Quality required at prices above the budget.
     pub q_max: f64,
 }
 
@@ -36,7 +36,7 @@ impl Curve {
     }
 }
 
-/// Returns the logistic function of a clamped argument.
+/// Returns the logistic function of `z`, which is first clamped to the input range of `participation`.
 #[inline]
 pub fn sigmoid(z: f64, participation: &Participation) -> f64 {
     1.0 / (1.0 + libm::exp(-z.clamp(participation.sigmoid_input_min, participation.sigmoid_input_max)))

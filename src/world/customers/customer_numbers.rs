@@ -20,9 +20,9 @@ pub struct ArrivalRun {
     pub day: u32,
     /// Group of the customers.
     pub group: Group,
-    /// Customer number of the first customer.
+    /// Lowest customer number in the arrival run.
     pub first_customer: u32,
-    /// Sequence number of the first customer within the group.
+    /// Lowest sequence number, within the group, in the arrival run.
     pub first_n: u32,
     /// Number of customers in the arrival run.
     pub count: u32,
@@ -34,7 +34,7 @@ canonical! {
 }
 
 impl ArrivalRun {
-    /// Returns the sequence number and the customer number of every customer.
+    /// Returns the sequence number and the customer number of each customer in the arrival run.
     pub fn numbers(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
         (self.first_n..self.first_n + self.count).zip(self.first_customer..)
     }

@@ -36,14 +36,14 @@ const MAX_SMALL_SPLIT_BLOCKS: usize = 2;
 /// Minimum number of blocks per task with [`WorkSplit::Large`].
 const MIN_LARGE_SPLIT_BLOCKS: usize = 24;
 
-/// All customers of a run. Active customers are stored in columns; of other customers, only the numbers are stored.
+/// All customers of a run. Active customers are stored in columns. For other customers, only the numbers are stored.
 #[derive(Debug, Clone)]
 pub struct Customers {
-    /// Customers of each group.
+    /// Active customers of each group, and the number of its customers so far.
     pub groups: ByGroup<GroupCustomers>,
-    /// Number of the next customer.
+    /// Customer number that the next lead receives, from [`FIRST_CUSTOMER`].
     pub next_customer: u32,
-    /// Number of the next subscription.
+    /// Number that the next subscription row receives, from 1.
     pub next_subscription: u32,
     /// Mapping between customer numbers, groups and days of arrival.
     pub numbers: CustomerNumbers,
@@ -54,7 +54,8 @@ pub struct Customers {
 pub struct GroupCustomers {
     /// Number of customers generated since day 0.
     pub created: u32,
-    /// Blocks of active customers. Block k contains the sequence numbers k * BLOCK + 1 ..= (k + 1) * BLOCK.
+    /// Blocks of active customers. Block k contains the sequence numbers k * n + 1 ..= (k + 1) * n, where n is
+    /// [`CUSTOMERS_PER_BLOCK`].
     pub blocks: Vec<Block>,
 }
 
@@ -90,7 +91,7 @@ impl GroupCustomers {
         if block.n.capacity() == 0 {
             // Most blocks fill up within days, so allocating full capacity is cheaper than growing 27 columns
             // repeatedly.
-            *block = Block::with_room(CUSTOMERS_PER_BLOCK as usize);
+            *block = Block::with_capacity(CUSTOMERS_PER_BLOCK as usize);
         }
         block
     }
@@ -176,12 +177,16 @@ impl Customers {
     /// earlier sweep.
     pub fn sweep_with<T: Send, R: Send>(
         &mut self,
-        found: Vec<T>,
+        block_results: Vec<T>,
         work: impl Fn(Group, u32, &mut Block, T) -> R + Sync,
     ) -> Vec<R> {
         let jobs = self.nonempty_blocks_mut();
-        debug_assert_eq!(jobs.len(), found.len(), "no customer may arrive or leave between the sweeps");
-        let jobs = jobs.into_iter().zip(found).collect();
+        debug_assert_eq!(
+            jobs.len(),
+            block_results.len(),
+            "no customer may arrive or leave between the sweeps"
+        );
+        let jobs = jobs.into_iter().zip(block_results).collect();
         run_in_parallel(jobs, WorkSplit::Small, |((group, at, block), item)| work(group, at, block, item))
     }
 

@@ -2,8 +2,8 @@
 //! (docs/mechanics/customers/generation.md).
 //!
 //! The n-th customer of a group has the same traits in every run with the same seed, before drift is added. The
-//! position of every draw in the stream is fixed. Attributes without effect are not drawn: patience, negotiation rate,
-//! and the lock-in penalty, because contracts last one month.
+//! position of every draw in the stream is fixed. Attributes that have no effect are not drawn: patience, negotiation
+//! rate, and the lock-in penalty (contracts last one month).
 
 use super::curve::Curve;
 use super::persona::PersonaPicks;

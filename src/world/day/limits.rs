@@ -1,4 +1,5 @@
-//! Size limits for the next day. With extreme parameters and budgets, the customers would not fit into memory.
+//! Size limits for the next day. Without them, extreme parameters and budgets could create more customers than fit
+//! into memory.
 
 use crate::events::Facts;
 use crate::identifiers::Group;

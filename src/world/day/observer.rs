@@ -25,7 +25,7 @@ pub trait DayObserver: Send + Sync {
     fn before_satisfaction(&self, _group: Group, _block: &Block, _day: &DayContext<'_>) {}
 
     /// Called before the subscribers of a block decide, after satisfaction and issues are updated.
-    fn before_decisions(&self, _group: Group, _block: &Block, _judgement: &RenewalContext<'_>) {}
+    fn before_decisions(&self, _group: Group, _block: &Block, _context: &RenewalContext<'_>) {}
 
     /// Called before the negotiations of the day. In the negotiations, enterprises reply, open threads and are lost.
     fn before_negotiations(
@@ -39,7 +39,7 @@ pub trait DayObserver: Send + Sync {
     /// Called after the subscribers' contributions were applied, which is the last reputation change of the day.
     fn after_reputation_changes(
         &self,
-        _moods: &ByGroup<ReputationContribution>,
+        _contributions: &ByGroup<ReputationContribution>,
         _market: &Market,
         _params: &Params,
     ) {

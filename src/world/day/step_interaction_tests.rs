@@ -83,12 +83,12 @@ fn set_outage_probability(params: &mut Params, certain: bool) {
 #[test]
 fn outage_affects_issues_satisfaction_and_reputation() {
     let params = Params::bundled();
-    let of = |certain| {
+    let with_outage = |certain| {
         TestRun::simulate_day_with_changed_params(40, &params, |params| {
             set_outage_probability(params, certain)
         })
     };
-    let ((quiet, otherwise, _), (broken, down, _)) = (of(false), of(true));
+    let ((quiet, otherwise, _), (broken, down, _)) = (with_outage(false), with_outage(true));
     assert!(!otherwise.outage && otherwise.downtime_minutes == 0 && down.outage && down.downtime_minutes > 0);
     assert_eq!(otherwise.total_usage, down.total_usage, "all other conditions are equal");
 

@@ -15,9 +15,9 @@ use crate::reputation::{ReputationCause, event_damage};
 /// A thread that reappears reports the same loss again every day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LostEnterprise {
-    /// Customer number of the enterprise.
+    /// Customer number, unique across all groups.
     pub customer: u32,
-    /// Group of the enterprise.
+    /// Group to which the enterprise belongs.
     pub group: Group,
     /// Sequence number of the enterprise within its group.
     pub n: u32,

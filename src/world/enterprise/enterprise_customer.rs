@@ -12,13 +12,13 @@ use crate::random::{Part, Streams};
 /// An enterprise that requested an offer and whose state is still tracked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnterpriseCustomer {
-    /// Customer number of the enterprise.
+    /// Customer number, unique across all groups.
     pub customer: u32,
-    /// Group of the enterprise.
+    /// Group to which the enterprise belongs.
     pub group: Group,
     /// Sequence number of the enterprise within its group.
     pub n: u32,
-    /// Subscription number of the enterprise.
+    /// Number of the subscription row, which the enterprise keeps from lead to cancellation.
     pub subscription: u32,
     /// Negotiation traits of the enterprise.
     pub negotiator: Negotiator,

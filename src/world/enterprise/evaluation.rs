@@ -207,10 +207,13 @@ pub(super) mod tests {
     #[test]
     fn quality_beyond_all_requirements_accepts_any_price() {
         let params = Params::bundled();
-        let dear = offerings(&[(Plan::B, 100_000.0)]);
-        assert_eq!(evaluator(0.9, 0.96, 1.0).respond(&dear, 1, &params), OfferResponse::Accept(0));
+        let expensive = offerings(&[(Plan::B, 100_000.0)]);
+        assert_eq!(evaluator(0.9, 0.96, 1.0).respond(&expensive, 1, &params), OfferResponse::Accept(0));
         assert_near(surplus(0.96, 100_000.0, &K, &params), 0.01);
-        assert_eq!(evaluator(0.9, 0.95, 1.0).respond(&dear, 1, &params), OfferResponse::Counter(0, 49.50));
+        assert_eq!(
+            evaluator(0.9, 0.95, 1.0).respond(&expensive, 1, &params),
+            OfferResponse::Counter(0, 49.50)
+        );
         let weak = evaluator(0.5, 0.6, 0.7);
         assert_eq!(weak.respond(&offerings(&[(Plan::A, 1.0)]), 1, &params), OfferResponse::Silence);
         assert_near(surplus(0.5, 1.0, &K, &params), -0.019889927);
@@ -237,12 +240,12 @@ pub(super) mod tests {
         let mixed = offerings(&[(Plan::C, 61.0), (Plan::B, 58.0)]);
         assert_eq!(offer_evaluator.respond(&mixed, 1, &params), OfferResponse::Accept(1));
         // If no offering is affordable, the offering with the largest surplus determines the plan of the counter-offer.
-        let dear = offerings(&[(Plan::B, 61.0), (Plan::C, 70.0)]);
-        let OfferResponse::Counter(1, price) = offer_evaluator.respond(&dear, 1, &params) else {
+        let expensive = offerings(&[(Plan::B, 61.0), (Plan::C, 70.0)]);
+        let OfferResponse::Counter(1, price) = offer_evaluator.respond(&expensive, 1, &params) else {
             panic!("a counter-offer")
         };
         assert_near(price, counter_price(60.0, 0.75, 1, &params));
         params.fidelity.deal_price_ceiling = false;
-        assert_eq!(offer_evaluator.respond(&dear, 1, &params), OfferResponse::Accept(1));
+        assert_eq!(offer_evaluator.respond(&expensive, 1, &params), OfferResponse::Accept(1));
     }
 }

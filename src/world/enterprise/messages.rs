@@ -33,7 +33,7 @@ pub struct OfferMessage {
     pub starts_thread: bool,
     /// Number of the message's turn in the thread.
     pub turn: u32,
-    /// Offerings of the message.
+    /// One to three offerings, each a plan and a price.
     pub offerings: Vec<Offering>,
     /// Relationship after a late answer; `None` if the relationship does not change.
     pub relationship: Option<f64>,

@@ -39,9 +39,9 @@ use crate::reputation::{OnReputationWrite, Reputations};
 /// State of the negotiations with enterprises.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Enterprise {
-    /// Number of the next thread.
+    /// Number that the next thread receives, from 1.
     pub next_thread: u32,
-    /// Number of the next turn. Turns of all threads are numbered together.
+    /// Number that the next turn receives, from 1. Turns of all threads are numbered together.
     pub next_message: u32,
     /// Threads that are open or can still trigger, in ascending order of thread number.
     pub threads: Vec<Thread>,
@@ -60,7 +60,7 @@ impl Default for Enterprise {
 
 /// Inputs that all negotiations of a day share.
 pub struct NegotiationContext<'a> {
-    /// Context of the day.
+    /// Values that all customer mechanisms of the day share.
     pub day: &'a DayContext<'a>,
     /// The product, including today's improvements.
     pub product: &'a Product,
@@ -126,7 +126,7 @@ impl Enterprise {
         result
     }
 
-    /// Returns the enterprise with this customer number.
+    /// Returns the enterprise with this customer number, or `None` if it is not tracked.
     pub fn enterprise_customer(&self, customer: u32) -> Option<&EnterpriseCustomer> {
         self.enterprise_position(customer).map(|at| &self.companies[at])
     }

@@ -1,4 +1,5 @@
-//! An index of open threads by enterprise, for tool calls that name many enterprises. Few threads are open at a time.
+//! An index of open threads by enterprise, for tool calls that name many enterprises. The index is small, because few
+//! threads are open at a time.
 
 use std::collections::BTreeMap;
 

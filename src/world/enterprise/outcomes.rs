@@ -100,7 +100,7 @@ impl NegotiationStep<'_> {
         self.refresh_terms(customer)
     }
 
-    /// Updates the required quality of a subscriber and returns its terms.
+    /// Updates the required quality of a subscriber, and returns the subscriber's terms.
     fn refresh_terms(&mut self, customer: u32) -> Option<TermsChanged> {
         let group = self.customer_group(customer);
         let n = self.enterprise.enterprise_customer(customer)?.n;

@@ -13,7 +13,7 @@ use crate::quality::{
 
 impl NegotiationContext<'_> {
     /// Returns the quality of each plan in a negotiation, before the first-impression factor of a lead. Uses today's
-    /// product, without tenure and weekday. Quotas count only if the subscription is `active`.
+    /// product, and ignores tenure and weekday. Quotas count only if `active` is true: the enterprise is a subscriber.
     pub(super) fn negotiation_quality(&self, group: Group, row: &Subscriber, active: bool) -> ByPlan<f64> {
         let product = self.product.quality(group, self.day.params);
         let quality = &self.day.params.quality;

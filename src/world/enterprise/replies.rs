@@ -19,10 +19,10 @@ impl Enterprise {
         &self,
         thread: &Thread,
         customers: &Customers,
-        talks: &NegotiationContext<'_>,
+        context: &NegotiationContext<'_>,
     ) -> Option<OfferEvaluator> {
         let row = self.enterprise_customer(thread.customer)?.row(customers)?;
-        self.offer_evaluator_for_row(thread, &row, talks)
+        self.offer_evaluator_for_row(thread, &row, context)
     }
 
     /// Returns the evaluator like [`Enterprise::offer_evaluator`], but for a given row of the enterprise.
@@ -30,16 +30,16 @@ impl Enterprise {
         &self,
         thread: &Thread,
         row: &Subscriber,
-        talks: &NegotiationContext<'_>,
+        context: &NegotiationContext<'_>,
     ) -> Option<OfferEvaluator> {
         let company = self.enterprise_customer(thread.customer)?;
-        let mut quality = talks.negotiation_quality(thread.group, row, company.is_subscriber());
+        let mut quality = context.negotiation_quality(thread.group, row, company.is_subscriber());
         if thread.kind == ThreadKind::NewLead {
-            let impression = company.first_impression_factor(talks.day.params, talks.day.streams);
+            let impression = company.first_impression_factor(context.day.params, context.day.streams);
             quality.0.iter_mut().for_each(|quality| *quality *= impression);
         }
         Some(OfferEvaluator {
-            curve: talks.negotiation_curve(thread.group, row),
+            curve: context.negotiation_curve(thread.group, row),
             quality,
             initial_offer_factor: company.negotiator.initial_offer_factor,
             max_turns: company.negotiator.max_negotiation_turns,
@@ -64,9 +64,9 @@ impl NegotiationStep<'_> {
 
     fn decide_reply(&self, thread: usize) -> Option<DueReply> {
         let thread_state = &self.enterprise.threads[thread];
-        let judge = self.enterprise.offer_evaluator(thread_state, self.customers, self.context)?;
+        let evaluator = self.enterprise.offer_evaluator(thread_state, self.customers, self.context)?;
         let offerings = thread_state.last_offerings().to_vec();
-        let answer = judge.respond(&offerings, thread_state.last().number, self.day.params);
+        let answer = evaluator.respond(&offerings, thread_state.last().number, self.day.params);
         Some(DueReply { thread, answer, offerings })
     }
 

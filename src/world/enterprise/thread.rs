@@ -8,7 +8,7 @@ use crate::identifiers::Group;
 /// longer trigger.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thread {
-    /// Number of the thread, from 1.
+    /// Number of the thread among all threads of the run, from 1.
     pub number: u32,
     /// Customer number of the enterprise.
     pub customer: u32,
@@ -29,15 +29,15 @@ pub struct Turn {
     pub message: u32,
     /// Number of the turn within the thread. Turns of the same tool call can have the same number.
     pub number: u32,
-    /// Sender of the turn.
+    /// Side that added the turn: the system, the enterprise or the player.
     pub sender: Sender,
-    /// Day of the turn.
+    /// Day on which the turn was added.
     pub day: u32,
-    /// Offerings that the player sent in this turn.
+    /// Offerings that the player sent in this turn; empty in other turns.
     pub offerings: Vec<Offering>,
-    /// Asked price of the enterprise, dollars per seat per month.
+    /// Price that the enterprise named in this turn, dollars per seat per month.
     pub asked: Option<f64>,
-    /// Day on which the enterprise replies to this turn.
+    /// Day on which the enterprise replies to this turn; `None` if no reply is due.
     pub reply_day: Option<u32>,
     /// Whether the thread died while this turn was the last turn.
     pub dead: bool,
@@ -90,13 +90,13 @@ impl Thread {
         self.turns.iter().filter(|turn| turn.sender == Sender::Agent).count() as u32
     }
 
-    /// Returns the day of the customer's newest turn.
+    /// Returns the day of the customer's newest turn, or `None` if the customer has not written.
     pub fn last_customer_day(&self) -> Option<u32> {
         let customer = self.turns.iter().filter(|turn| turn.sender == Sender::Customer);
         customer.map(|turn| turn.day).max()
     }
 
-    /// Returns the asked price: the last price that the enterprise named.
+    /// Returns the asked price, which is the last price that the enterprise named, or `None` if it named no price.
     pub fn last_asked_price(&self) -> Option<f64> {
         self.turns.iter().rev().find_map(|turn| turn.asked)
     }

@@ -25,7 +25,7 @@ pub struct ServiceDay {
     pub p95_ms: f64,
     /// Share of failed requests, 0..=1.
     pub error_rate: f64,
-    /// Capacity tier of the day.
+    /// Capacity tier that the company rented, 0..=7.
     pub capacity_tier: u8,
     /// Capacity of the tier, units per day.
     pub capacity_units: u32,
@@ -112,7 +112,7 @@ pub enum Notice {
     PlanChangeRequest {
         /// Customer number of the enterprise.
         customer: u32,
-        /// Whether the requested plan is higher than the current plan.
+        /// Whether the requested plan comes after the current plan in the order A, B, C.
         upgrade: bool,
     },
     /// Deal with an enterprise.
@@ -131,14 +131,14 @@ pub enum Notice {
     EconomyUpdate(Reading),
     /// Discovery of a group by market research.
     GroupFound {
-        /// The discovered group.
+        /// Group that the player knows from now on.
         group: Group,
         /// Number of the market research attempt, from 1.
         attempt: u32,
     },
     /// Completion of a market study.
     StudyComplete {
-        /// The completed study.
+        /// Group, levels and due day of the study.
         study: Study,
         /// Largest relative error of the study's estimates.
         noise: f64,
@@ -159,7 +159,7 @@ pub enum LossCause {
 /// The public reaction to a post of the player.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reaction {
-    /// Number of the post.
+    /// Number of the post among the player's posts, from 1.
     pub post: u32,
     /// Number of views of the post.
     pub views: u64,

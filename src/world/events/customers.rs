@@ -62,7 +62,7 @@ impl Source {
         Channel::at(self as usize)
     }
 
-    /// Returns the identifier of the source in tables.
+    /// Returns the identifier that tables use for the source.
     pub fn id(self) -> &'static str {
         match self.channel() {
             Some(channel) => channel.id(),
@@ -71,7 +71,7 @@ impl Source {
         }
     }
 
-    /// Returns the name of the source on screens.
+    /// Returns the name that screens show for the source.
     pub fn name(self) -> &'static str {
         match self {
             Source::Network => "word of mouth",
@@ -83,7 +83,7 @@ impl Source {
 /// Leads of one group that arrived through one paid channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelLeads {
-    /// The paid channel.
+    /// Paid channel through which the leads arrived.
     pub channel: Channel,
     /// The group that the ads targeted.
     pub group: Group,
@@ -96,7 +96,7 @@ pub struct ChannelLeads {
 /// A customer who arrived today.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arrival {
-    /// Customer number of the new customer.
+    /// Customer number, unique across all groups.
     pub customer: u32,
     /// Group of the customer.
     pub group: Group,
@@ -117,7 +117,7 @@ pub struct Arrival {
 /// A new subscription row, for subscribers and for leads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SubscriptionOpened {
-    /// Subscription number.
+    /// Number of the new subscription.
     pub subscription: u32,
     /// Customer number of the subscriber or lead.
     pub customer: u32,
@@ -150,7 +150,7 @@ pub enum SubscriptionStatus {
 }
 
 impl SubscriptionStatus {
-    /// Returns the identifier of the status in tables.
+    /// Returns the identifier that tables use for the status.
     pub fn id(self) -> &'static str {
         ["lead", "subscribed", "cancelled", "lost"][self as usize]
     }
@@ -159,11 +159,11 @@ impl SubscriptionStatus {
 /// New terms of a subscription, after a bill, a plan switch or a deal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TermsChanged {
-    /// Subscription number.
+    /// Number of the subscription whose terms changed.
     pub subscription: u32,
-    /// Customer number.
+    /// Customer number of the subscriber.
     pub customer: u32,
-    /// Plan of the subscription.
+    /// Plan after the change.
     pub plan: Plan,
     /// Price before discounts, dollars per seat per month.
     pub listed_price: f64,
@@ -206,9 +206,9 @@ pub enum EndCause {
 /// The end of a subscription or a lead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SubscriptionEnded {
-    /// Subscription number.
+    /// Number of the subscription that ended.
     pub subscription: u32,
-    /// Customer number.
+    /// Customer number of the former subscriber or lead.
     pub customer: u32,
     /// Group of the customer.
     pub group: Group,
@@ -225,16 +225,16 @@ pub struct SubscriptionEnded {
 /// Usage of several customers of one group, in ascending order of customer number.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct UsageRows {
-    /// Numbers of the customers.
+    /// Customer numbers, in ascending order.
     pub customers: Vec<u32>,
-    /// Units that each customer used.
+    /// Units that each customer used, in the order of `customers`.
     pub units: Vec<u32>,
 }
 
 /// A support issue that was opened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct IssueOpened {
-    /// Number of the issue.
+    /// Number of the issue among all issues of the run, from 1.
     pub issue: u32,
     /// Number of the customer who opened the issue.
     pub customer: u32,

@@ -55,7 +55,7 @@ impl Trend {
         }
     }
 
-    /// Returns the identifier of the trend in tables.
+    /// Returns the identifier that tables use for the trend.
     pub fn id(self) -> &'static str {
         ["strong_expansion", "expansion", "neutral", "contraction", "severe_contraction"][self as usize]
     }
@@ -90,7 +90,7 @@ impl Phase {
         }
     }
 
-    /// Returns the identifier of the phase in tables.
+    /// Returns the identifier that tables use for the phase.
     pub fn id(self) -> &'static str {
         ["peak", "declining", "trough", "recovering"][self as usize]
     }

@@ -5,7 +5,7 @@ use crate::identifiers::{ByGroup, ByPlan};
 /// Figures of the company on one day (`docs/mechanics/day.md#figures-of-a-day`).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DayFigures {
-    /// Number of the day.
+    /// Day to which the figures belong.
     pub day: u32,
     /// Units used by all customers.
     pub total_usage: u64,
@@ -45,8 +45,8 @@ pub struct DayFigures {
     pub cash: f64,
     /// Monthly recurring revenue at the end of the day, dollars.
     pub mrr: f64,
-    /// Number of active individual subscriptions.
+    /// Number of active individual subscriptions at the end of the day.
     pub individual_subscribers: u32,
-    /// Seats of all subscribed enterprises.
+    /// Whole seats of all subscribed enterprises at the end of the day.
     pub enterprise_seats: u32,
 }

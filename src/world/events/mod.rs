@@ -22,7 +22,7 @@ pub use economy::{Phase, Reading, Trend};
 pub use figures::DayFigures;
 pub use money::{Category, LedgerEntry, LedgerNote, Payment};
 pub use posts::{
-    CustomerProblems, Engagement, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, PostCause,
+    CustomerProblems, Engagement, Opinion, OwnPostPublished, OwnPostSeen, Post, PostAuthor, PostCause,
     PostSubject, Sentiment, Severity, Theme,
 };
 pub use research::{Attempt, Knowledge, Project, Snapshot, Study};
@@ -35,7 +35,7 @@ use super::settings::SettingsChange;
 /// All facts about one day, or about the tool calls after that day.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Facts {
-    /// Day of all facts.
+    /// Day to which all facts belong.
     pub day: u32,
     /// Changed families of settings, with all their new values.
     pub settings: Vec<SettingsChange>,
@@ -61,9 +61,9 @@ pub struct Facts {
     pub endings: Vec<SubscriptionEnded>,
     /// Subscriptions with changed terms. The last change of a subscription applies.
     pub changes: Vec<TermsChanged>,
-    /// Turns of enterprise threads.
+    /// Turns that were added to threads.
     pub turns: Vec<ThreadTurn>,
-    /// Deals with enterprises.
+    /// Deals that enterprises accepted.
     pub deals: Vec<DealClosed>,
     /// Leads by paid channel and group.
     pub channel_leads: Vec<ChannelLeads>,
@@ -75,12 +75,12 @@ pub struct Facts {
     pub payments: Vec<Payment>,
     /// Cash movements other than payments of subscribers.
     pub ledger: Vec<LedgerEntry>,
-    /// Subscribers who earned ad revenue.
+    /// Ad revenue from each subscriber.
     pub ads_revenue: Vec<AdsRevenueRow>,
     /// Posts that the player did not write, in ascending order of post number.
     pub posts: Vec<Post>,
-    /// Posts of the player.
-    pub own_posts: Vec<OwnPostMade>,
+    /// Posts that the player published.
+    pub own_posts: Vec<OwnPostPublished>,
     /// Posts of the player that were seen and judged.
     pub own_posts_seen: Vec<OwnPostSeen>,
     /// Notifications for the inbox.

@@ -27,9 +27,9 @@ pub struct Payment {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Category {
-    /// Initial funding of the company.
+    /// Cash with which the company starts on day 0.
     InitialFunding,
-    /// Acquisition cost of leads.
+    /// Cost of every lead, in addition to advertising.
     LeadAcquisitionCost,
     /// Payment of a subscriber.
     SubscriptionPayment,
@@ -54,7 +54,7 @@ pub enum Category {
 }
 
 impl Category {
-    /// All categories of cash movements.
+    /// All categories, in declaration order.
     pub const ALL: [Category; 12] = [
         Category::InitialFunding,
         Category::LeadAcquisitionCost,
@@ -70,7 +70,7 @@ impl Category {
         Category::ResearchProject,
     ];
 
-    /// Returns the identifier of the category in tables.
+    /// Returns the identifier that tables use for the category.
     pub fn id(self) -> &'static str {
         match self {
             Category::InitialFunding => "initial_funding",
@@ -92,26 +92,26 @@ impl Category {
 /// A cash movement other than a payment of a subscriber or a lead cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LedgerEntry {
-    /// Category of the cash movement.
+    /// What the money was spent on or received for.
     pub category: Category,
     /// Amount in dollars. Costs are negative.
     pub amount: f64,
-    /// Note on the cash movement.
+    /// Data from which the note of the entry is written.
     pub note: LedgerNote,
 }
 
-/// Note on a cash movement, as data.
+/// Data from which the note on a cash movement is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LedgerNote {
     /// The default note of the category.
     General,
     /// Spending that targets groups, plans or customers.
     Targeted,
-    /// Number of active subscribers that ad revenue refers to.
+    /// Number of active subscribers, for ad revenue.
     Subscribers(u32),
     /// Tier and number of an R&D project.
     Project(u8, u32),
-    /// A market study.
+    /// The market study that was paid for.
     Study(Study),
 }
 

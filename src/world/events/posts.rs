@@ -9,10 +9,10 @@ use crate::identifiers::{Group, Plan};
 canonical! {
     Post { post, author, sentiment, engagement, matter }
     Engagement { likes, shares, virality }
-    PostAuthor { customer, group, n, persona, company }
-    Opinion { cause, troubles, theme, days_subscribed, plan, price, seats, waiting_days, downtime_minutes }
+    PostAuthor { customer, group, n, persona, enterprise_seats }
+    Opinion { cause, customer_problems, theme, days_subscribed, plan, price, seats, waiting_days, downtime_minutes }
     CustomerProblems { overload, outage, issue, quota }
-    OwnPostMade { post, content, reply_to }
+    OwnPostPublished { post, content, reply_to }
     OwnPostSeen { post, views, comments }
 }
 canonical_codes! {
@@ -24,7 +24,7 @@ canonical_codes! {
 /// A post that the player did not write.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Post {
-    /// Number of the post.
+    /// Number of the post among the posts that the player did not write, from 1.
     pub post: u32,
     /// Author of the post, or `None` for the market observer.
     pub author: Option<PostAuthor>,
@@ -32,7 +32,7 @@ pub struct Post {
     pub sentiment: Sentiment,
     /// Engagement of the post, hidden from the player.
     pub engagement: Engagement,
-    /// Subject of the post.
+    /// What the post is about, with the values for its text.
     pub matter: PostSubject,
 }
 
@@ -62,7 +62,7 @@ pub struct Engagement {
 /// A customer who writes a post.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PostAuthor {
-    /// Customer number of the author.
+    /// Customer number, unique across all groups.
     pub customer: u32,
     /// Group of the customer.
     pub group: Group,
@@ -71,7 +71,7 @@ pub struct PostAuthor {
     /// Profile attributes of the customer.
     pub persona: PersonaPicks,
     /// Whole seats of an enterprise; 0 for individuals.
-    pub company: u32,
+    pub enterprise_seats: u32,
 }
 
 /// The subject of a post.
@@ -90,9 +90,9 @@ pub enum PostSubject {
         /// Number of the perspective from which the author writes.
         perspective: u8,
     },
-    /// A competitor event.
+    /// A competitor's gain in quality, as the press estimates it.
     CompetitorEvent {
-        /// Number of the competitor.
+        /// Index of the competitor's name in the parameter `competitor_names`.
         name: u8,
         /// Number of the perspective from which the author writes.
         perspective: u8,
@@ -158,7 +158,7 @@ pub struct Opinion {
     /// Reason why the customer writes the post.
     pub cause: PostCause,
     /// Problems that the customer has today.
-    pub troubles: CustomerProblems,
+    pub customer_problems: CustomerProblems,
     /// The theme that matters most to the customer.
     pub theme: Theme,
     /// Days since the subscription started.
@@ -290,27 +290,27 @@ pub enum Theme {
 
 /// A post that the player published.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct OwnPostMade {
-    /// Number of the post.
+pub struct OwnPostPublished {
+    /// Number of the post among the player's posts, from 1.
     pub post: u32,
     /// Text of the post.
     pub content: String,
-    /// Number of the post to which the player replies.
+    /// Number of the post to which the player replies; `None` if the post is not a reply.
     pub reply_to: Option<u32>,
 }
 
 /// A post of the player that was seen and judged.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OwnPostSeen {
-    /// Number of the post.
+    /// Number of the post among the player's posts, from 1.
     pub post: u32,
     /// Number of views of the post.
     pub views: u64,
-    /// Numbers of the comments on the post.
+    /// Numbers of the comments on the post, among the posts that the player did not write.
     pub comments: Vec<u32>,
 }
 
-/// Severity of a competitor event that the press reports.
+/// Severity that the press reports for a competitor event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// Gain in quality below 0.03.
@@ -324,7 +324,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Returns the identifier of the severity in posts and tables.
+    /// Returns the identifier that posts and tables use for the severity.
     pub fn id(self) -> &'static str {
         ["minor", "moderate", "major", "transformative"][self as usize]
     }

@@ -25,7 +25,7 @@ canonical! {
 }
 
 impl Project {
-    /// Returns the identifier of the project in tables, for instance `t3_1`.
+    /// Returns the identifier that tables use for the project, for instance `t3_1`.
     pub fn id(&self) -> String {
         format!("t{}_{}", self.tier, self.number)
     }
@@ -34,7 +34,7 @@ impl Project {
 /// A market study in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Study {
-    /// The studied group.
+    /// Group whose estimates the study updates.
     pub group: Group,
     /// Study level that the study reaches, 2..=5.
     pub target: u8,
@@ -71,7 +71,7 @@ canonical! { Attempt { earlier, cost, found } }
 pub struct Knowledge {
     /// Study level of the group; 0 before its discovery.
     pub level: u8,
-    /// Day on which the group was discovered.
+    /// Day on which the group was discovered; 0 for a group that is known initially, `None` for an unknown group.
     pub discovered_day: Option<u32>,
     /// Last day on which the study level rose.
     pub last_research_day: Option<u32>,
@@ -81,10 +81,10 @@ pub struct Knowledge {
 
 canonical! { Knowledge { level, discovered_day, last_research_day, snapshot } }
 
-/// The true values of a group on a day, on which estimates are based. Hidden from the player.
+/// The true values of a group on one day, from which estimates are computed. Hidden from the player.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Snapshot {
-    /// Day of the snapshot.
+    /// Day on which the values were taken.
     pub day: u32,
     /// Mean budget, dollars per month.
     pub c_max: f64,

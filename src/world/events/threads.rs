@@ -29,7 +29,7 @@ pub enum ThreadKind {
 }
 
 impl ThreadKind {
-    /// All kinds of threads.
+    /// All kinds, in declaration order.
     pub const ALL: [ThreadKind; 4] =
         [ThreadKind::NewLead, ThreadKind::PlanChange, ThreadKind::ChurnPrevention, ThreadKind::Renegotiation];
 
@@ -38,7 +38,7 @@ impl ThreadKind {
         ThreadKind::ALL.into_iter().find(|kind| kind.id() == id)
     }
 
-    /// Returns the identifier of the kind in tables.
+    /// Returns the identifier that tables use for the kind.
     pub fn id(self) -> &'static str {
         match self {
             ThreadKind::NewLead => "new_lead",
@@ -62,7 +62,7 @@ pub enum Sender {
 }
 
 impl Sender {
-    /// Returns the identifier of the sender in tables.
+    /// Returns the identifier that tables use for the sender.
     pub fn id(self) -> &'static str {
         match self {
             Sender::System => "system",
@@ -75,7 +75,7 @@ impl Sender {
 /// A plan that is offered at a price.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offering {
-    /// The offered plan.
+    /// Plan to which the price applies.
     pub plan: Plan,
     /// Price, dollars per seat per month.
     pub price: f64,
@@ -151,7 +151,7 @@ impl Restore for TurnContent {
 pub struct ThreadTurn {
     /// Number of the turn among the turns of all threads.
     pub message: u32,
-    /// Number of the thread.
+    /// Number of the thread among all threads of the run, from 1.
     pub thread: u32,
     /// Customer number of the enterprise.
     pub customer: u32,
@@ -163,11 +163,11 @@ pub struct ThreadTurn {
     pub kind: ThreadKind,
     /// Number of the turn within the thread, from 0.
     pub number: u32,
-    /// Sender of the turn.
+    /// Side that added the turn: the system, the enterprise or the player.
     pub sender: Sender,
     /// Number of whole seats; 1 in turns that the player adds to a thread.
     pub seats: u32,
-    /// Content of the turn.
+    /// What the turn offers, asks or states, as data for its text.
     pub content: TurnContent,
 }
 
@@ -180,9 +180,9 @@ pub struct DealClosed {
     pub kind: ThreadKind,
     /// Whether the deal made a lead a subscriber.
     pub activated: bool,
-    /// Plan of the deal.
+    /// Plan that the enterprise accepted.
     pub plan: Plan,
-    /// Price of the deal, dollars per seat per month.
+    /// Agreed price, dollars per seat per month.
     pub price: f64,
     /// Number of the player's turns in the thread.
     pub agent_turns: u32,

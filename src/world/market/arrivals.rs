@@ -25,7 +25,7 @@ use crate::retention::required_at_price;
 /// Number of leads of a day, by outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeadCounts {
-    /// Number of all leads.
+    /// Number of all leads, including enterprises below the quality gate.
     pub all: u32,
     /// Number of individual leads.
     pub individuals: u32,
@@ -37,7 +37,7 @@ pub struct LeadCounts {
 
 /// Inputs that all arrivals of a day share.
 pub struct ArrivalContext<'a> {
-    /// Context of the day.
+    /// Values that all customer mechanisms of the day share.
     pub day: &'a DayContext<'a>,
     /// The market, including today's changes.
     pub market: &'a Market,
@@ -62,8 +62,8 @@ struct InitialTerms {
 enum LeadOutcome {
     Subscribes { choice: PlanChoice, terms: InitialTerms, required: f64 },
     Lost { choice: PlanChoice, discount: f64 },
-    Prospect,
-    GatedOut,
+    RequestsOffer,
+    BelowQualityGate,
 }
 
 /// Returns the factors of today's leads by group. The factors of undiscovered groups are 0.
@@ -167,11 +167,11 @@ fn plan_offers(arrivals: &ArrivalContext<'_>, group: Group) -> ByPlan<PlanOffer>
 /// The decision of an individual lead, with the inputs of the decision.
 #[derive(Debug, Clone, Copy)]
 pub struct LeadEvaluation {
-    /// Plans that are offered to the lead.
+    /// Price, quality and quota of each plan on the day of arrival.
     pub offers: ByPlan<PlanOffer>,
     /// Discount for the lead's group and channel, dollars per month.
     pub discount: f64,
-    /// Demand of the lead that is compared with quotas.
+    /// Demand of the lead, in units per day, which is compared with quotas.
     pub demand: f64,
     /// The lead's curve including today's expectations.
     pub curve: Curve,
@@ -272,9 +272,9 @@ fn evaluate_lead(
     let (curve, demand) = curve_and_demand(arrivals, group, &traits);
     let outcome = if group.is_enterprise() {
         if passes_quality_gate(offers, demand, &curve, params) {
-            LeadOutcome::Prospect
+            LeadOutcome::RequestsOffer
         } else {
-            LeadOutcome::GatedOut
+            LeadOutcome::BelowQualityGate
         }
     } else {
         let evaluation = evaluate_offers(arrivals, offers, group, source, (curve, demand), noise);
@@ -322,9 +322,9 @@ fn record_channels(
         let Some(groups) = settings.targeted_ads.targeted_spend.get(&channel) else { continue };
         for (&group, &spend) in groups {
             if spend > 0.0 && market.is_known(group) && market.yields[channel][group] > 0.0 {
-                let of_group =
+                let group_leads =
                     leads_by_run.iter().filter(|(run, _)| run.group == group).flat_map(|(_, leads)| leads);
-                let leads = of_group.filter(|lead| lead.source.channel() == Some(channel)).count() as u32;
+                let leads = group_leads.filter(|lead| lead.source.channel() == Some(channel)).count() as u32;
                 facts.channel_leads.push(ChannelLeads { channel, group, leads, spend });
             }
         }
@@ -477,7 +477,7 @@ fn open_lead_threads(
 ) {
     for (run, leads) in leads_by_run {
         for ((n, customer), lead) in run.numbers().zip(leads) {
-            if !matches!(lead.outcome, LeadOutcome::Prospect) {
+            if !matches!(lead.outcome, LeadOutcome::RequestsOffer) {
                 continue;
             }
             counts.companies += 1;

@@ -11,10 +11,10 @@ use crate::product::Product;
 use crate::random::{Part, Stream, Streams};
 use crate::series::RecordedEvent;
 
-/// A competitor event.
+/// A competitor's gain in quality, which raised the expectations of customers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CompetitorEvent {
-    /// Day of the event.
+    /// Day on which the gain was applied.
     pub day: u32,
     /// Gain in quality that was applied.
     pub boost: f64,
@@ -94,7 +94,7 @@ pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, params: &Pa
 /// A competitor's move on a day, before the move is applied.
 #[derive(Debug, Clone)]
 pub struct CompetitorMove {
-    /// Day of the move.
+    /// Day on which the move takes effect.
     pub day: u32,
     /// Drawn gain in quality, scaled by the growth over the run.
     pub sampled: f64,
@@ -180,7 +180,8 @@ pub fn apply_move(
     events.push(event);
 }
 
-/// Draws today's event, if any: its gain in quality before the growth over the run, and the share of the quality bank.
+/// Draws today's event, if any: its gain in quality before the growth over the run, and the share of the quality bank
+/// that competitors can copy.
 pub fn draw_event(chance: f64, competitor: &Competitor, stream: &mut Stream) -> Option<RecordedEvent> {
     if chance <= 0.0 || !stream.bernoulli(chance) {
         return None;

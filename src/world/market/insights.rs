@@ -93,7 +93,7 @@ impl EstimatedField {
 /// Estimates of a group, rounded for display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Insights {
-    /// The group that is estimated.
+    /// Group to which the estimates apply.
     pub group: Group,
     /// Study level of the estimates, 1..=5.
     pub level: u8,
@@ -103,13 +103,13 @@ pub struct Insights {
     pub willingness_to_pay: f64,
     /// Usage, units per day; per seat for enterprises.
     pub usage_volume: f64,
-    /// Estimated minimum quality.
+    /// Mean minimum quality.
     pub quality_floor: f64,
     /// Size of the group's market in individuals or enterprises, at least 1.
     pub market_cap: u64,
-    /// Annual growth of the group's market, at least 0.
+    /// Annual growth of the group's market as a share, at least 0.
     pub growth_rate: f64,
-    /// Estimated aversion to long contracts, at least 0.
+    /// Mean aversion to long contracts, at least 0.
     pub lockin_aversion: f64,
     /// Estimates that exist only for groups of enterprises.
     pub enterprise: Option<EnterpriseInsights>,

@@ -14,17 +14,17 @@ use crate::settings::TargetedAds;
 /// Factors from which today's expected leads of a group are computed. Hidden from the player.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeadFactors {
-    /// Factor of the reputation in the group.
+    /// Factor from the company's reputation in the group.
     pub reputation: f64,
-    /// Factor of market saturation, which decreases with the number of subscribers.
+    /// Factor from market saturation, 0..=1. The factor falls as the number of subscribers rises.
     pub saturation: f64,
     /// Calendar factor: weekday factor times day-of-month factor.
     pub calendar: f64,
-    /// Factor of the economy.
+    /// Factor from the economy; 1 is neutral.
     pub economy: f64,
-    /// Factor of the reactions to the company's posts.
+    /// Factor from the reactions to the company's posts; 1 is neutral.
     pub social: f64,
-    /// Factor of demand surges.
+    /// Factor from demand surges, or 1 if there is no surge.
     pub surge: f64,
     /// Leads of each paid channel, before the factors are applied.
     pub paid: ByChannel<f64>,
@@ -92,11 +92,11 @@ pub fn paid_leads(spend: f64, leads_per_unit: f64, leads: &Leads) -> f64 {
 
 /// Inputs from which the leads of a day are computed.
 pub struct LeadContext<'a> {
-    /// Number of the day.
+    /// Day for which the leads are computed.
     pub day: u32,
-    /// Calendar factor of weekday and day of the month.
+    /// Calendar factor: weekday factor times day-of-month factor.
     pub calendar: f64,
-    /// State of the market.
+    /// Market whose reputation, yields, economy and surges determine the leads.
     pub market: &'a Market,
     /// Active subscriptions of each group after today's cancellations.
     pub subscribers: &'a ByGroup<u32>,

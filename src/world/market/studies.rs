@@ -17,7 +17,7 @@ impl Market {
         self.studies.iter().find(|study| study.group == group)
     }
 
-    /// Returns the study that would be started today.
+    /// Returns the study that starts if the player buys a study of a group on `day`.
     pub fn plan_study(&self, group: Group, target: u8, day: u32, params: &Params) -> Study {
         let due_day = day + params.study_level(target).delay_days;
         Study { group, target, before: self.knowledge[group].level, due_day }

@@ -63,10 +63,10 @@ pub fn draw_week_surges(
 /// Returns the product of the factors of all surges on a day, or 1 if there is no surge. In the released simulator, a
 /// surge starts on the first day of the week in which it was drawn ([`SurgeStart::Week`]).
 pub fn surge_factor(day: u32, surges: &[Surge], start: SurgeStart) -> f64 {
-    let started = |surge: &Surge| start == SurgeStart::Week || surge.day <= day;
+    let has_started = |surge: &Surge| start == SurgeStart::Week || surge.day <= day;
     surges
         .iter()
-        .filter(|surge| day < surge.end_day && started(surge))
+        .filter(|surge| day < surge.end_day && has_started(surge))
         .map(|surge| surge.multiplier)
         .product()
 }

@@ -25,7 +25,7 @@ pub struct ParameterDifference {
 }
 
 impl Params {
-    /// Returns the value of a parameter, or of a list or table of parameters.
+    /// Returns the value of a key, which names a parameter, a list or a table of parameters.
     ///
     /// # Errors
     /// Returns an error that lists similar names if no parameter has this name.
@@ -100,11 +100,11 @@ fn parameter_error(key: &str, problem: String) -> ParameterError {
 }
 
 fn is_start_only(key: &str) -> bool {
-    let is_of = |table: &str| {
+    let is_in_table = |table: &str| {
         let rest = key.strip_prefix(table);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     };
-    START_ONLY_KEYS.into_iter().any(is_of) && !PER_CUSTOMER_KEYS.contains(&key)
+    START_ONLY_KEYS.into_iter().any(is_in_table) && !PER_CUSTOMER_KEYS.contains(&key)
 }
 
 #[cfg(test)]

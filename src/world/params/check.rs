@@ -27,13 +27,13 @@ pub(super) const ANY: Range = f64::NEG_INFINITY..=f64::INFINITY;
 /// differ.
 macro_rules! parameters {
     ($($(#[$meta:meta])* pub struct $name:ident {
-        $($(#[$of_field:meta])* pub $field:ident $(as $key:literal)?: $type:ty $(where $range:expr)?,)*
+        $($(#[$field_meta:meta])* pub $field:ident $(as $key:literal)?: $type:ty $(where $range:expr)?,)*
     })*) => {$(
         $(#[$meta])*
         #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct $name {
-            $($(#[$of_field])* $(#[serde(rename = $key)])? pub $field: $type,)*
+            $($(#[$field_meta])* $(#[serde(rename = $key)])? pub $field: $type,)*
         }
 
         impl $crate::params::check::Ranged for $name {

@@ -7,7 +7,7 @@ use super::check::parameters;
 parameters! {
     /// Shape of the participation curve (docs/mechanics/customers/participation.md).
     pub struct Participation {
-        /// Steepness of both halves of the curve.
+        /// Factor by which the steepness of each half of the curve is multiplied.
         pub curve_gain: f64,
         /// Price as a share of the budget at the center of the lower half of the curve.
         pub curve_left_center: f64,
@@ -15,7 +15,7 @@ parameters! {
         pub curve_right_center: f64,
         /// Price as a share of the budget at which the two halves of the curve meet.
         pub curve_split: f64 where 0.0..=1.0,
-        /// Divisor of the quality range. Each half of the curve spans the quotient.
+        /// Number by which the quality range is divided to obtain the span of each half of the curve.
         pub curve_half_divisor: f64 where 1.0..=100.0,
         /// Weight of the lower sigmoid in the blended curve of the paper, 0..=1.
         pub blend_weight: f64 where 0.0..=1.0,
@@ -23,7 +23,7 @@ parameters! {
         pub sigmoid_input_min: f64,
         /// Upper bound of the logistic function's argument.
         pub sigmoid_input_max: f64,
-        /// Surplus that a plan must exceed to be preferred by a lead.
+        /// Surplus that a plan must exceed for a lead to prefer it to plan A.
         pub lead_min_satisfaction_exclusive: f64,
     }
 
@@ -79,8 +79,8 @@ parameters! {
         pub daily_usage_rate_min: f64 where 0.0..=1e6,
     }
 
-    /// One of the 26 customer groups (docs/mechanics/customers/groups.md). Money and usage of enterprise groups are
-    /// per seat.
+    /// Parameters of one of the 26 customer groups (docs/mechanics/customers/groups.md). Money and usage of enterprise
+    /// groups are per seat.
     pub struct GroupParams {
         /// Identifier of the group.
         pub id: String,
@@ -271,13 +271,13 @@ pub struct EnterprisePersona {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EmailParts {
-    /// First names (48).
+    /// 48 first names for the local part of an address.
     pub first_names: Vec<String>,
-    /// Last names (48).
+    /// 48 last names for the local part of an address.
     pub last_names: Vec<String>,
-    /// Company words of the domain (20).
+    /// 20 company words for the domain of an address.
     pub company_domains: Vec<String>,
-    /// Top-level domains (6).
+    /// 6 top-level domains.
     pub domain_suffixes: Vec<String>,
 }
 

@@ -33,7 +33,7 @@ pub struct ParameterError {
 }
 
 impl ParameterError {
-    /// Creates an error for text that is not valid TOML or has wrong keys or types.
+    /// Creates an error for text that is not valid TOML, or that has wrong keys or types.
     pub fn from_toml(source: &str, text: &str, error: &toml::de::Error) -> ParameterError {
         ParameterError {
             source: source.to_owned(),

@@ -53,7 +53,7 @@ parameters! {
         pub base_rep_per_customer: f64,
         /// Weight of negative satisfaction relative to positive satisfaction.
         pub negative_satisfaction_multiplier: f64,
-        /// Minimum group size in the calculation of the daily change.
+        /// Minimum number of contributing subscribers that the formula of the daily change uses.
         pub min_group_size: u32,
         /// Minimum absolute daily change that is applied.
         pub daily_delta_min_abs: f64,
@@ -63,8 +63,8 @@ parameters! {
         pub reputation_clamp_max: f64 where 0.0..=1.0,
         /// Minimum reputation after a change.
         pub reputation_floor: f64 where 0.0..=1.0,
-        /// Factor of all spillover. A reputation change of a group is multiplied by this factor and by the weight of
-        /// that group for the affected group.
+        /// Factor that applies to every spillover. The spillover to a group is the reputation change of the source
+        /// group times this factor and the weight of the source group for the affected group.
         pub cross_group_spillover_factor: f64,
         /// Absolute change that spillover must exceed to be applied.
         pub cross_delta_min_abs: f64,
@@ -74,7 +74,7 @@ parameters! {
         pub cancel_damage_noise_offset: f64,
         /// Coefficient of squared negative satisfaction in the factor of the reputation damage.
         pub cancel_negative_satisfaction_coef: f64,
-        /// Minimum group size in the calculation of event damage.
+        /// Minimum number of subscribers that the formula of the event damage uses.
         pub event_scale_min_group_size: u32,
     }
 
@@ -148,7 +148,7 @@ parameters! {
         pub competitor_post_shares_ratio: f64,
         /// Number of points of view for press posts about competitors.
         pub post_perspective_count: u32 where 1.0..=255.0,
-        /// Names of the competitors.
+        /// Names of competitors, one of which is drawn for each press post.
         pub competitor_names: Vec<String>,
     }
 

@@ -102,7 +102,7 @@ parameters! {
         pub competitor: Competitor,
         /// Preference drift.
         pub drift: Drift,
-        /// The economy and its publication.
+        /// The hidden PMI, its publication and its effects.
         pub economy as "macro": MacroEconomy,
         /// Posts that customers write.
         pub social: SocialParams,
@@ -195,7 +195,8 @@ impl Params {
         self.digest_without(|value, earlier| value == earlier)
     }
 
-    /// Returns the digest that versions without the keys of `ADDED_KEYS` computed for the same parameters.
+    /// Returns the digest that earlier versions, which did not have the keys of `ADDED_KEYS`, computed for the same
+    /// parameters.
     pub fn earlier_digest(&self) -> String {
         self.digest_without(|_, _| true)
     }
@@ -204,13 +205,13 @@ impl Params {
     /// with the earlier behavior.
     fn digest_without(&self, is_left_out: impl Fn(&Json, &Json) -> bool) -> String {
         let tables = serde_json::to_value(self).expect("parameters hold only strings and finite numbers");
-        digest_of(tables, self.fault, &ADDED_KEYS, is_left_out)
+        digest_tables(tables, self.fault, &ADDED_KEYS, is_left_out)
     }
 }
 
 /// Returns the digest of parameters that are given as JSON. Omits the added keys for which `is_left_out` returns true,
 /// and tables that contain no other keys.
-fn digest_of(
+fn digest_tables(
     mut tables: Json,
     fault: Option<Fault>,
     added: &[(&str, &str, &str)],
@@ -266,7 +267,7 @@ mod tests {
         let digest = |first: u32, second: bool, added: &[(&str, &str, &str)]| {
             let mut tables = serde_json::to_value(&params).expect("tables");
             tables["next_table"] = serde_json::json!({ "first": first, "second": second });
-            digest_of(tables, params.fault, added, |current, earlier| current == earlier)
+            digest_tables(tables, params.fault, added, |current, earlier| current == earlier)
         };
         assert_eq!(digest(1, true, &added), params.digest(), "the table is left out");
         let others = [digest(2, true, &added), digest(1, false, &added), digest(2, false, &added)];
@@ -292,7 +293,7 @@ mod tests {
                 tables
             };
             let digest = |value, added| {
-                digest_of(with_key(value), params.fault, added, |current, earlier| current == earlier)
+                digest_tables(with_key(value), params.fault, added, |current, earlier| current == earlier)
             };
             assert_eq!(digest("release", &added), params.digest(), "it is left out");
             assert_ne!(digest("paper", &added), params.digest(), "another value counts");

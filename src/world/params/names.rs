@@ -9,7 +9,7 @@ use novamind_base::similar_names;
 /// Fields that contain the name of a list element.
 pub(super) const NAME_FIELDS: [&str; 3] = ["id", "tier", "level"];
 
-/// Returns the name of a list element.
+/// Returns the name of a list element: its `id`, `tier` or `level`, the identifier of its group, or its index.
 pub(super) fn element_name(list: &[Value], at: usize) -> String {
     let text = NAME_FIELDS.iter().find_map(|field| match list.get(at)?.get(field)? {
         Value::String(id) => Some(id.clone()),
@@ -31,8 +31,8 @@ fn is_by_group(list: &[Value]) -> bool {
 }
 
 /// Replaces list indexes in a key with element names.
-pub(super) fn replace_indexes_with_names(tables: &Table, counted: &str) -> String {
-    let mut parts = counted.split('.');
+pub(super) fn replace_indexes_with_names(tables: &Table, indexed_key: &str) -> String {
+    let mut parts = indexed_key.split('.');
     let Some(first) = parts.next() else { return String::new() };
     let (mut key, mut here) = (first.to_owned(), tables.get(first));
     for part in parts {
@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn list_elements_have_readable_names() {
         let tables = bundled_tables();
-        for (counted, key) in [
+        for (indexed_key, key) in [
             ("group.0.c_max_mean", "group.S1.c_max_mean"),
             ("model_tier.0.unit_cost", "model_tier.1.unit_cost"),
             ("reputation_influence.S1.2", "reputation_influence.S1.S3"),
@@ -145,7 +145,7 @@ mod tests {
             ("nothing.1.x", "nothing.1.x"),
             ("", ""),
         ] {
-            assert_eq!(replace_indexes_with_names(&tables, counted), key);
+            assert_eq!(replace_indexes_with_names(&tables, indexed_key), key);
         }
     }
 

@@ -111,9 +111,9 @@ parameters! {
 
     /// One model tier: cost and quality of the model behind a plan.
     pub struct ModelTier {
-        /// Number of the model tier.
+        /// Number of the model tier, 1..=5.
         pub tier: u8,
-        /// Class of the model.
+        /// Class of the model, for instance `Haiku/Flash`.
         pub class: String,
         /// Compute cost, dollars per usage unit.
         pub unit_cost: f64 where 0.0..=1e6,
@@ -123,7 +123,7 @@ parameters! {
 
     /// One capacity tier: its capacity and its cost.
     pub struct CapacityTier {
-        /// Number of the capacity tier.
+        /// Number of the capacity tier, 0..=7.
         pub tier: u8,
         /// Capacity of the tier, units per day.
         pub capacity_units: u32 where 1.0..=4e9,
@@ -133,9 +133,9 @@ parameters! {
 
     /// One R&D tier (`docs/mechanics/product/research.md`).
     pub struct ResearchTier {
-        /// Number of the R&D tier.
+        /// Number of the R&D tier, 1..=20.
         pub tier: u8,
-        /// Name of the tier.
+        /// Display name, for instance `Evaluation & Testing Pipeline`.
         pub name: String,
         /// Price of a project, dollars.
         pub cost: u32 where 0.0..=4e9,

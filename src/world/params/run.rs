@@ -49,7 +49,7 @@ parameters! {
         pub default_capacity_tier: u8 where 0.0..=7.0,
         /// Initial reputation of every group, 0..=1.
         pub initial_reputation: f64 where 0.0..=1.0,
-        /// General bonus on day 0.
+        /// Quality that is added to the base quality for all groups on day 0.
         pub q_shared_bonus: f64,
         /// Study level of the six initial groups.
         pub initial_group_info_level: u8 where 0.0..=5.0,
@@ -102,8 +102,8 @@ pub struct Horizon {
 }
 
 impl Run {
-    /// Returns the horizon of a run with a length of `days`. A run with the length `last_day` of the result has the
-    /// same last day, and a run with the length `total_days` of the result has the same horizon.
+    /// Returns the horizon of a run whose length is `days`. If `total_days` of the result is used as the length, the
+    /// horizon is the same. If `last_day` of the result is used as the length, the last day is the same.
     pub fn horizon(&self, days: u32) -> Horizon {
         let week = self.days_per_week;
         match self.horizon_rule {
@@ -120,7 +120,7 @@ impl Run {
 }
 
 impl HorizonRule {
-    /// Returns the name of the rule in parameters and tables.
+    /// Returns the name that parameters and tables use for the rule.
     pub fn name(self) -> &'static str {
         match self {
             HorizonRule::Exact => "exact",
@@ -135,7 +135,7 @@ impl HorizonRule {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fidelity {
-    /// Formula of the participation curve.
+    /// Formula that computes the required quality at a price.
     pub required_quality: RequiredQuality,
     /// Quality terms that are multiplied by the quota factor.
     pub perceived_quality: PerceivedQuality,
@@ -145,7 +145,7 @@ pub struct Fidelity {
     pub usage_quota: UsageQuota,
     /// How often accumulated drift is added to a customer's curve.
     pub drift_counted: DriftCounted,
-    /// First day of a demand surge.
+    /// Rule for the first day of a demand surge.
     pub surge_start: SurgeStart,
     /// Whether dead enterprise threads reappear.
     pub reappearing_threads: bool,
@@ -165,7 +165,7 @@ pub struct Fidelity {
     pub interface: Interface,
 }
 
-/// Formula of the participation curve.
+/// Formula that computes the required quality at a price, which is the form of the participation curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RequiredQuality {
@@ -291,7 +291,7 @@ pub enum Interface {
 }
 
 impl Interface {
-    /// Returns the identifier of the generation in parameters and data.
+    /// Returns the identifier that parameters and data use for the generation.
     pub fn id(self) -> &'static str {
         match self {
             Interface::Release1 => "release_1",
@@ -299,7 +299,7 @@ impl Interface {
         }
     }
 
-    /// Returns the name of the generation in texts and tables.
+    /// Returns the name that texts and tables use for the generation.
     pub fn name(self) -> &'static str {
         match self {
             Interface::Release1 => "release 1",
@@ -312,7 +312,7 @@ impl Interface {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesChoice {
-    /// The recorded series that is replayed.
+    /// Series whose values replace random draws.
     pub replayed: Replayed,
 }
 

@@ -63,9 +63,9 @@ pub fn compute_service(
     let operations = &params.operations;
     let capacity_units = params.capacity_tier(morning.core.capacity_tier).capacity_units;
     let load =
-        fixed_service.map_or(total_usage, |held| (total_usage as f64 * held.load_factor).round() as u64);
+        fixed_service.map_or(total_usage, |fixed| (total_usage as f64 * fixed.load_factor).round() as u64);
     let overload = overload(load, f64::from(capacity_units), operations);
-    let stream_day = fixed_service.map_or(morning.day, |held| held.draw_day);
+    let stream_day = fixed_service.map_or(morning.day, |fixed| fixed.draw_day);
     let mut stream = streams.open(Part::Service, [u64::from(stream_day)]);
     let outage = stream.bernoulli(outage_probability(morning.core.operations, overload, operations));
     let downtime_minutes = if outage { draw_downtime_minutes(&mut stream, operations) } else { 0 };

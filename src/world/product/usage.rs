@@ -7,7 +7,7 @@ use crate::identifiers::{ByGroup, ByPlan, Plan};
 use crate::morning::Morning;
 use crate::params::{CustomerGeneration, Params, UsageQuota};
 
-/// Units that were used today.
+/// Usage of one day, in units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MeteredUsage {
     /// Units used by all customers.

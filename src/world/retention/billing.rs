@@ -96,7 +96,7 @@ fn bill_rows(
     BlockBills { group, number, payments, changes }
 }
 
-/// Returns the payment of a subscriber and sets the terms of the next billing period.
+/// Computes the payment of a subscriber, and sets the terms of the next billing period.
 fn take_payment(group: Group, block: &mut Block, at: usize, day: &DayContext<'_>) -> Payment {
     let &DayContext { morning, settings, params, .. } = day;
     let floor = params.billing.effective_price_min;

@@ -32,13 +32,13 @@ pub fn mean_resolved(
     base: f64,
     spend: f64,
     group: Group,
-    of_group: u32,
-    of_pool: u32,
+    group_issues: u32,
+    pool_issues: u32,
     issues: &Issues,
 ) -> f64 {
     let per_dollar =
         if group.is_enterprise() { issues.enterprise_ops_scale } else { issues.individual_ops_scale };
-    (base + per_dollar * spend) * f64::from(of_group) / f64::from(of_pool)
+    (base + per_dollar * spend) * f64::from(group_issues) / f64::from(pool_issues)
 }
 
 /// Returns the relationship after the resolution of an issue that was open for `open_days` days.
@@ -69,7 +69,7 @@ pub fn relationship_after_waiting(relationship: f64, issues: &Issues, quality: &
 /// The counter that numbers issues.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct IssueCounter {
-    /// Number of the next issue.
+    /// Number that the next issue receives, from 1.
     pub next_issue: u32,
 }
 
@@ -168,7 +168,7 @@ pub fn allocate_resolutions(
     }
 }
 
-/// Results of an update of a block's issues.
+/// Results of updating the issues of one block for a day.
 #[derive(Debug, PartialEq, Eq)]
 pub struct IssueUpdates {
     /// Whether any issue was open at the start of the day.
@@ -273,8 +273,8 @@ mod tests {
     fn resolution_depends_on_budget_and_speed_affects_relationship() {
         let params = Params::bundled();
         let (s1, e1) = (Group::at(0).expect("S1"), Group::at(3).expect("E1"));
-        let mean = |base, spend, group, of_group, of_pool| {
-            mean_resolved(base, spend, group, of_group, of_pool, &params.issues)
+        let mean = |base, spend, group, group_issues, pool_issues| {
+            mean_resolved(base, spend, group, group_issues, pool_issues, &params.issues)
         };
         assert_near(mean(2.0, 10.0, e1, 1, 4), 0.75);
         assert_near(mean(2.0, 10.0, s1, 3, 4), 6.0);

@@ -45,7 +45,7 @@ pub fn refresh_block(group: Group, block: &mut Block, morning: &Morning, params:
     }
 }
 
-/// Returns the budget that is stored with a bill: max(15, c + dc), without dc if drift is counted once.
+/// Returns the budget that is stored with a bill: max(15, c + dc), or max(15, c) if drift is counted once.
 pub fn remembered_budget(c_max: f64, c_drift: f64, params: &Params) -> f64 {
     let drift = match params.fidelity.drift_counted {
         DriftCounted::EveryRead => c_drift,

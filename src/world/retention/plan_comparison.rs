@@ -28,16 +28,11 @@ pub struct PlanComparison {
 }
 
 /// Creates the comparison of plans for the individual at a position of a block.
-pub fn compare_plans(
-    group: Group,
-    block: &Block,
-    at: usize,
-    judgement: &RenewalContext<'_>,
-) -> PlanComparison {
-    let &DayContext { morning, settings, params, .. } = judgement.day;
+pub fn compare_plans(group: Group, block: &Block, at: usize, context: &RenewalContext<'_>) -> PlanComparison {
+    let &DayContext { morning, settings, params, .. } = context.day;
     let service_penalty = match params.fidelity.service_penalty {
         ServicePenalty::Satisfaction => 0.0,
-        ServicePenalty::Everywhere => judgement.day.service_penalty,
+        ServicePenalty::Everywhere => context.day.service_penalty,
     };
     let prices = ByPlan::from_fn(|plan| {
         let discount = ongoing_discount(block.customer[at], group, plan, settings, params);
@@ -55,10 +50,10 @@ pub fn compare_plans(
     let experiences = ByPlan::from_fn(|plan| QualityTerms {
         delivered: morning.delivered(group, plan) - service_penalty,
         relationship: relationship_bonus(block.relationship[at], quality),
-        tenure: judgement.day.tenure.bonus(morning.day - block.start_day[at]),
+        tenure: context.day.tenure.bonus(morning.day - block.start_day[at]),
         quota: quota_factor(morning.quotas[plan], demand, quality),
         issues: quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]),
-        ads: block.ads_quality_sensitivity[at] * judgement.day.ads.for_group(group),
+        ads: block.ads_quality_sensitivity[at] * context.day.ads.for_group(group),
     });
     PlanComparison {
         prices,
@@ -66,7 +61,7 @@ pub fn compare_plans(
         service_penalty,
         own_curve: block.curve(at),
         expectation: morning.expectations[group],
-        willingness_to_pay: judgement.willingness_to_pay[group],
+        willingness_to_pay: context.willingness_to_pay[group],
     }
 }
 

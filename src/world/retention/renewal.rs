@@ -44,9 +44,9 @@ pub fn group_involuntary_rate(group: Group, day: u32, params: &Params, streams: 
 /// An individual who cancelled today because no plan was acceptable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CancelledIndividual {
-    /// Customer number of the individual.
+    /// Customer number, unique across all groups.
     pub customer: u32,
-    /// Group of the individual.
+    /// Group to which the individual belongs.
     pub group: Group,
     /// Sequence number of the individual within the group.
     pub n: u32,
@@ -75,7 +75,7 @@ pub struct RenewalResults {
 
 /// Inputs that all billing decisions of a day share.
 pub struct RenewalContext<'a> {
-    /// Context of the day.
+    /// Values that all customer mechanisms of the day share.
     pub day: &'a DayContext<'a>,
     /// Monthly rate of involuntary churn of each group.
     pub involuntary: ByGroup<f64>,
@@ -125,17 +125,17 @@ pub fn record_decisions(
 }
 
 /// Returns the reputation change that each individual without an acceptable plan causes. The changes are negative.
-fn reputation_damages(gave_up: &[CancelledIndividual], day: &DayContext<'_>) -> Vec<f64> {
+fn reputation_damages(cancelled: &[CancelledIndividual], day: &DayContext<'_>) -> Vec<f64> {
     let &DayContext { morning, params, streams, .. } = day;
     let keys_of =
         |person: &CancelledIndividual| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
-    let keys: Vec<[u64; 4]> = gave_up.iter().map(keys_of).collect();
+    let keys: Vec<[u64; 4]> = cancelled.iter().map(keys_of).collect();
     let rolls = streams.first_words(Part::ReputationEvent, &keys);
     let damage = |(person, roll): (&CancelledIndividual, Word)| {
         let subscribers = morning.subscribers[person.group];
         -cancel_damage(person.satisfaction, subscribers, roll.uniform(), &params.reputation)
     };
-    gave_up.iter().zip(rolls).map(damage).collect()
+    cancelled.iter().zip(rolls).map(damage).collect()
 }
 
 /// Returns a random word for each position of a block. The word decides whether a payment fails permanently.
@@ -156,19 +156,19 @@ pub fn decide_block(
     group: Group,
     number: u32,
     block: &mut Block,
-    judgement: &RenewalContext<'_>,
+    context: &RenewalContext<'_>,
 ) -> BlockDecisions {
     let mut outcome = BlockDecisions::default();
     if group.is_enterprise() {
         return outcome;
     }
-    let (morning, rate) = (judgement.day.morning, judgement.involuntary[group]);
-    let due = due_today(block, morning.day, judgement.day.params);
+    let (morning, rate) = (context.day.morning, context.involuntary[group]);
+    let due = due_today(block, morning.day, context.day.params);
     if due.is_empty() {
         return outcome;
     }
     let words = match rate > 0.0 {
-        true => payment_failure_words(group, number, morning.day, judgement.day.streams),
+        true => payment_failure_words(group, number, morning.day, context.day.streams),
         false => [0; CUSTOMERS_PER_BLOCK as usize],
     };
     let mut gone = Vec::new();
@@ -176,11 +176,11 @@ pub fn decide_block(
         let cause = if rate > 0.0 && bernoulli_from_word(words[block.word_position(at)], rate) {
             Some(EndCause::Involuntary)
         } else {
-            match compare_plans(group, block, at, judgement).choice(judgement.day.params) {
+            match compare_plans(group, block, at, context).choice(context.day.params) {
                 None if block.satisfaction[at] < 0.0 => Some(EndCause::Quality),
                 None => Some(EndCause::Price),
                 Some(plan) if plan != block.plan[at] => {
-                    outcome.switches.push(switch_plan(group, block, at, plan, judgement));
+                    outcome.switches.push(switch_plan(group, block, at, plan, context));
                     None
                 }
                 Some(_) => None,
@@ -195,7 +195,7 @@ pub fn decide_block(
         }
     }
     block.remove(&gone);
-    outcome.damages = reputation_damages(&outcome.cancelled_individuals, judgement.day);
+    outcome.damages = reputation_damages(&outcome.cancelled_individuals, context.day);
     outcome
 }
 
@@ -247,9 +247,9 @@ fn switch_plan(
     block: &mut Block,
     at: usize,
     plan: Plan,
-    judgement: &RenewalContext<'_>,
+    context: &RenewalContext<'_>,
 ) -> (bool, TermsChanged) {
-    let &DayContext { morning, settings, params, .. } = judgement.day;
+    let &DayContext { morning, settings, params, .. } = context.day;
     let listed_price = morning.core.prices[plan];
     let upgrade = listed_price > block.listed_price[at];
     let promotion = ongoing_discount(block.customer[at], group, plan, settings, params);
@@ -305,10 +305,10 @@ mod tests {
         willingness: f64,
         check: impl FnOnce(&RenewalContext<'_>) -> R,
     ) -> R {
-        with_renewal_context_of(&Params::bundled(), day, settings, willingness, check)
+        with_renewal_context_and_params(&Params::bundled(), day, settings, willingness, check)
     }
 
-    fn with_renewal_context_of<R>(
+    fn with_renewal_context_and_params<R>(
         params: &Params,
         day: &Morning,
         settings: &Settings,
@@ -350,12 +350,12 @@ mod tests {
         };
         let mut block = Block::default();
         block.push(Subscriber { plan: Plan::B, relationship: 0.7, open_issue_days: 3, ..subscriber(1) });
-        with_renewal_context(&day, &settings, 1.0, |judgement| {
-            let qualities = compare_plans(group(), &block, 0, judgement).qualities(judgement.day.params);
+        with_renewal_context(&day, &settings, 1.0, |context| {
+            let qualities = compare_plans(group(), &block, 0, context).qualities(context.day.params);
             for (plan, expected) in Plan::ALL.into_iter().zip([0.151809447, 0.298929601, 0.496473152]) {
                 assert!((qualities[plan] - expected).abs() < 1e-9, "{plan}: {}", qualities[plan]);
             }
-            assert_eq!(compare_plans(group(), &block, 0, judgement).choice(judgement.day.params), None);
+            assert_eq!(compare_plans(group(), &block, 0, context).choice(context.day.params), None);
         });
     }
 
@@ -379,11 +379,11 @@ mod tests {
             settings.promotion.global = promotion;
             let mut block = Block::default();
             block.push(Subscriber { plan: Plan::B, start_day: 1, ..subscriber(1) });
-            with_renewal_context(&day, &settings, willingness, |judgement| {
-                let weighing = compare_plans(group(), &block, 0, judgement);
-                let quality = weighing.qualities(judgement.day.params)[Plan::B];
+            with_renewal_context(&day, &settings, willingness, |context| {
+                let comparison = compare_plans(group(), &block, 0, context);
+                let quality = comparison.qualities(context.day.params)[Plan::B];
                 assert!((quality - 0.484657359).abs() < 1e-9);
-                let choice = weighing.choice(judgement.day.params);
+                let choice = comparison.choice(context.day.params);
                 assert_eq!(choice.is_some(), stays, "list price {list}");
             });
         }
@@ -409,8 +409,8 @@ mod tests {
             settings.promotion.global = promotion;
             let mut block = Block::default();
             block.push(Subscriber { plan: Plan::B, listed_price: 20.0, start_day: 1, ..subscriber(1) });
-            with_renewal_context_of(&params, &day, &settings, 1.0, |judgement| {
-                let comparison = compare_plans(group(), &block, 0, judgement);
+            with_renewal_context_and_params(&params, &day, &settings, 1.0, |context| {
+                let comparison = compare_plans(group(), &block, 0, context);
                 assert_eq!(comparison.prices.0, prices, "{rule:?}, list price {list}");
                 let expected = stays.then_some(Plan::B);
                 assert_eq!(comparison.choice(&params), expected, "{rule:?}, list price {list}");
@@ -432,10 +432,9 @@ mod tests {
             customers.groups[group()].activate(row);
         }
         let (mut reputation, mut facts) = (Reputations::initial(&Params::bundled()), Facts::default());
-        let renewals = with_renewal_context(&day, &settings, 1.0, |judgement| {
-            let decided =
-                customers.sweep(|group, number, block| decide_block(group, number, block, judgement));
-            record_decisions(decided, &mut reputation, judgement.day.params, &mut facts, &mut |_| {})
+        let renewals = with_renewal_context(&day, &settings, 1.0, |context| {
+            let decided = customers.sweep(|group, number, block| decide_block(group, number, block, context));
+            record_decisions(decided, &mut reputation, context.day.params, &mut facts, &mut |_| {})
         });
         assert_eq!((renewals.cancellations, renewals.upgrades, renewals.downgrades), (1, 1, 0));
         assert_eq!((renewals.cancelled_individuals.len(), renewals.cancelled_individuals[0].n), (1, 1));

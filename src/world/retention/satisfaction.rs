@@ -35,7 +35,7 @@ pub struct SatisfactionTerms {
     pub experience: QualityTerms,
     /// Quality loss from today's service, which the delivered quality already includes.
     pub service_penalty: f64,
-    /// Perceived quality of the subscriber.
+    /// Quality that the subscriber perceives today, computed from `experience`.
     pub perceived: f64,
     /// Required quality at the subscriber's price, without the market's expectations.
     pub required: f64,

@@ -93,14 +93,15 @@ impl ResolutionRound<'_> {
             return;
         }
         let members = self.members(pool);
-        let of_pool: u32 = members.iter().map(PoolMembers::count).sum();
+        let pool_issues: u32 = members.iter().map(PoolMembers::count).sum();
         for (group, pool_members) in
             Group::all().zip(&members.0).filter(|(_, pool_members)| pool_members.count() > 0)
         {
             let [kind, which] = pool.keys();
             let keys = [u64::from(self.day), kind, which, group.index() as u64];
             let mut stream = self.streams.open(Part::IssueResolution, keys);
-            let mean = mean_resolved(base, spend, group, pool_members.count(), of_pool, &self.params.issues);
+            let mean =
+                mean_resolved(base, spend, group, pool_members.count(), pool_issues, &self.params.issues);
             let solved = stream.poisson(mean).min(u64::from(pool_members.count())) as usize;
             let mut order: Vec<u32> = (0..pool_members.count()).collect();
             let mut chosen = vec![false; order.len()];
@@ -121,15 +122,15 @@ impl ResolutionRound<'_> {
         for (number, issue_batch) in
             calls.filter(|(_, batch)| pool.defining_group().is_none_or(|group| group == batch.group))
         {
-            let of_group = &mut members[issue_batch.group];
+            let group_members = &mut members[issue_batch.group];
             if pool.contains_all_issues_of(issue_batch.group) && !issue_batch.solved.contains(&true) {
-                of_group.add_block(number, issue_batch.open.len() as u32);
+                group_members.add_block(number, issue_batch.open.len() as u32);
                 continue;
             }
             let block = &self.customers.groups[issue_batch.group].blocks[issue_batch.block as usize];
             for (entry, (&at, &solved)) in (0..).zip(issue_batch.open.iter().zip(&issue_batch.solved)) {
                 if !solved && pool.contains(issue_batch.group, block, usize::from(at)) {
-                    of_group.add(number, entry);
+                    group_members.add(number, entry);
                 }
             }
         }
@@ -137,8 +138,9 @@ impl ResolutionRound<'_> {
     }
 }
 
-/// Open issues of a group in a pool, in block order, stored as runs of consecutive entries of an [`IssueBatch`]. A
-/// block is a single run if the pool contains all its issues and none is resolved, as in the first pool of a day.
+/// The open issues that one group has in a pool, in block order. They are stored as runs of consecutive entries of an
+/// [`IssueBatch`]. A block is a single run if the pool contains all its issues and none is resolved, as in the first
+/// pool of a day.
 #[derive(Default)]
 struct PoolMembers {
     runs: Vec<MemberRun>,

@@ -44,7 +44,7 @@ fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")
 }
 
-/// Simulates a company without actions and calls `each` with the world and the facts of every day.
+/// Simulates a company whose player takes no action, and calls `each` with the world and the facts of every day.
 fn run_company_without_actions(seed: u64, mut each: impl FnMut(&World, &Facts)) {
     let (params, streams, mut facts) = (replay_params(), Streams::new(seed), Facts::default());
     let mut world = World::new(500, 1_000_000.0, &params, &mut facts);

@@ -72,7 +72,7 @@ impl DecisionList {
         }
         let below = 1.min(area.height);
         let list = Rect { height: area.height - below, ..area };
-        let lines = self.list_lines(list.width as usize, &context.company.company_names, context);
+        let lines = self.list_lines(list.width as usize, &context.company.enterprise_names, context);
         // The last line of the selected row stays visible, because it contains the reason for a refusal.
         let last = lines.iter().rposition(|line| line.row == Some(self.selected())).unwrap_or(0);
         let first = canvas.scroll_to_row(list, last, lines.len());

@@ -269,7 +269,7 @@ impl Dialog for BranchesPage {
                 canvas.draw_text(page, &format!("simulating days again: {share} % …"), Role::Warning);
             }
             BranchesView::Comparison(figures) => {
-                let names = &context.company.company_names;
+                let names = &context.company.enterprise_names;
                 let mut labels = vec![branch_name(&[])];
                 labels.extend(self.decisions.alternative_names(names));
                 figures.draw(canvas, page, &labels, names);

@@ -210,7 +210,7 @@ fn tools_can_be_scaled_or_left_out_from_a_week_on() {
     assert!(text(&page).contains("alternative 2 of 2") && text(&page).contains("Nothing is changed yet."));
     act(&mut page, &[Action::OmitDecision]);
     assert_eq!(page.decisions.alternatives().len(), 2);
-    let names = page.decisions.alternative_names(&new_company().company_names);
+    let names = page.decisions.alternative_names(&new_company().enterprise_names);
     assert_eq!(names[1], "week 5: leave out price B 25 → 30");
 }
 

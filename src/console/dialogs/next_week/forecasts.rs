@@ -36,7 +36,7 @@ impl NextWeekDialog {
             }
             let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
             let title = if record.width < 18 { "past" } else { "your past forecasts" };
-            if company.shows_calibration() {
+            if company.can_show_forecast_scores() {
                 canvas.draw_text(record, title, Role::Header);
             }
         }
@@ -101,7 +101,7 @@ impl NextWeekDialog {
             canvas.draw_aligned(place, text, role, Align::Right);
             canvas.register_click(place, Click::Row(0, at * 3 + column));
         }
-        if !company.shows_calibration() {
+        if !company.can_show_forecast_scores() {
             return;
         }
         let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };

@@ -149,7 +149,7 @@ impl ForecastsState {
     /// Returns descriptions of the scores at the displayed horizon, the longest first.
     fn score_texts(&self, company: &DisplayedCompany) -> Vec<String> {
         match company.forecast_scores.get(self.horizon).filter(|score| score.scored > 0) {
-            Some(score) if !company.shows_calibration() => vec![format!("{} came due", score.scored)],
+            Some(score) if !company.can_show_forecast_scores() => vec![format!("{} came due", score.scored)],
             Some(score) => {
                 let (inside, forecast_error) =
                     (format!("{} of {} in range", score.covered, score.scored), percent(score.mean_error, 1));

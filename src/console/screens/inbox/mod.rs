@@ -150,7 +150,7 @@ impl Inbox {
         let is_shown = !company.is_baseline() || !company.is_running();
         let min_turns = company.numbers.value(MIN_TURNS_PARAMETER).filter(|_| is_shown);
         let waiting = self.waiting_threads(company);
-        self.threads.merge_waiting(waiting, &company.company_names, min_turns.map(|turns| turns as u32));
+        self.threads.merge_waiting(waiting, &company.enterprise_names, min_turns.map(|turns| turns as u32));
         let threads = self.threads.threads.iter();
         let open: BTreeSet<u32> =
             threads.filter(|thread| thread.state.is_open()).map(|thread| thread.number).collect();

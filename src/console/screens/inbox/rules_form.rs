@@ -211,7 +211,7 @@ fn draw_rule_match(canvas: &mut Canvas<'_>, row: Rect, ruled: &RuleOutcome, cont
         waiting_thread.customer,
         waiting_thread.group,
         ruled.describe_reply(),
-        context.company.company_names.name(waiting_thread.customer)
+        context.company.enterprise_names.name(waiting_thread.customer)
     );
     let role = if ruled.reply.is_ok() { Role::Text } else { Role::Warning };
     canvas.draw_text(row, &words, role);

@@ -59,7 +59,7 @@ pub fn journal_lines(company: &DisplayedCompany) -> Vec<JournalLine> {
         let Some(last) = groups.last_mut() else { continue };
         match entry {
             JournalEntry::Call { .. } => {
-                last.calls.extend(call_line(entry, &mut settings, &undone, &company.company_names))
+                last.calls.extend(call_line(entry, &mut settings, &undone, &company.enterprise_names))
             }
             JournalEntry::Parameter { day, key, old, new, from_day, .. } => {
                 last.calls.push(parameter_line(*day, key, [old, new], *from_day));

@@ -73,7 +73,7 @@ impl Pane<Journal> for ScoresPane {
     }
 
     fn border(&self, _: &Journal, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
-        let note = match context.company.shows_calibration() {
+        let note = match context.company.can_show_forecast_scores() {
             true => coverage_text(&context.company.forecast_scores),
             false => String::new(),
         };
@@ -82,7 +82,7 @@ impl Pane<Journal> for ScoresPane {
 
     fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let company = context.company;
-        let summary = company.shows_calibration();
+        let summary = company.can_show_forecast_scores();
         let head = match summary {
             true => format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "error", "width"),
             false => format!("{:<9}{:>10}", "", "came due"),

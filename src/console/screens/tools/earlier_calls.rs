@@ -26,7 +26,7 @@ pub fn earlier_calls(tool: ToolId, company: &DisplayedCompany, most: usize) -> V
         }
     }
     let words = |arguments: &Value| {
-        describe_deals(tool, arguments, &company.company_names).unwrap_or_else(|| format_arguments(arguments))
+        describe_deals(tool, arguments, &company.enterprise_names).unwrap_or_else(|| format_arguments(arguments))
     };
     distinct_calls.into_iter().map(|(day, arguments)| (day, words(arguments))).collect()
 }

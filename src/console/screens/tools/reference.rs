@@ -97,7 +97,7 @@ fn thread_lines(company: &DisplayedCompany) -> Vec<String> {
             thread.seats,
             thread.kind,
             thread.days_left,
-            company.company_names.name(thread.customer)
+            company.enterprise_names.name(thread.customer)
         )
     }));
     lines

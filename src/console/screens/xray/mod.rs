@@ -138,7 +138,7 @@ impl Xray {
             XrayView::Satisfaction => InspectionQuestion::Satisfaction(self.group()?, day),
             XrayView::Reputation => InspectionQuestion::Reputation(self.group()?, day),
             XrayView::Spillover => InspectionQuestion::Spillover(day),
-            XrayView::Competitors => InspectionQuestion::Rivals(day),
+            XrayView::Competitors => InspectionQuestion::Competitors(day),
             XrayView::Drift => InspectionQuestion::Drift(day),
             XrayView::Draws => InspectionQuestion::Draws(self.selected_part()?, self.last_day),
             XrayView::Customer => InspectionQuestion::Customer(self.customer?, day),

@@ -29,7 +29,7 @@ impl ComparisonOperator {
         }
     }
 
-    /// Returns whether the comparison of `value` with `threshold` is true.
+    /// Returns whether `value` and `threshold`, in this order, satisfy the comparison.
     pub fn is_satisfied(self, value: f64, threshold: f64) -> bool {
         match self {
             ComparisonOperator::Above => value > threshold,
@@ -50,7 +50,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Returns the keyword of the direction in conditions.
+    /// Returns the keyword that conditions use for the direction.
     pub fn name(self) -> &'static str {
         match self {
             Direction::Rises => "rises",
@@ -62,9 +62,9 @@ impl Direction {
 /// A world event that a condition can test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WorldEvent {
-    /// A competitor move on the day.
+    /// An improvement by a competitor on the day.
     Competitor,
-    /// Drift of expectations and budgets on the day.
+    /// A drift of customers' requirements and budgets on the day.
     Drift,
     /// A demand surge that is active on the day.
     Surge,
@@ -77,7 +77,7 @@ impl WorldEvent {
     pub const ALL: [WorldEvent; 4] =
         [WorldEvent::Competitor, WorldEvent::Drift, WorldEvent::Surge, WorldEvent::Outage];
 
-    /// Returns the identifier of the event in conditions.
+    /// Returns the word that conditions use for the event.
     pub fn id(self) -> &'static str {
         ["rival", "drift", "surge", "outage"][self as usize]
     }
@@ -99,7 +99,7 @@ pub enum Condition {
     Compared(Quantity, ComparisonOperator, f64),
     /// A change in a figure compared with the day before.
     Changed(Quantity, Direction),
-    /// True on days on which the event occurs.
+    /// An event. The condition is true on days on which the event occurs.
     Event(WorldEvent),
 }
 

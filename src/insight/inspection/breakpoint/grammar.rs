@@ -87,7 +87,7 @@ impl<'a> TokenReader<'a> {
         })
     }
 
-    /// Reads a group in brackets, for example `(S1)`, if the next token is a bracket.
+    /// Reads a group in parentheses, for example `(S1)`, if the next token is an opening parenthesis.
     pub(crate) fn parse_group(&mut self) -> Result<Option<Group>, ConditionParseError> {
         if !self.next_if("(") {
             return Ok(None);
@@ -164,11 +164,12 @@ impl<'a> TokenReader<'a> {
 fn token_length(text: &str, first: char) -> usize {
     let is_word = |letter: char| letter.is_alphanumeric() || "_.-+%".contains(letter);
     let is_sign = |letter: char| "<>=".contains(letter);
-    let of = |belongs: &dyn Fn(char) -> bool| text.find(|letter| !belongs(letter)).unwrap_or(text.len());
+    let length_while =
+        |belongs: &dyn Fn(char) -> bool| text.find(|letter| !belongs(letter)).unwrap_or(text.len());
     match first {
-        _ if first.is_whitespace() => of(&char::is_whitespace),
-        _ if is_word(first) => of(&is_word),
-        _ if is_sign(first) => of(&is_sign),
+        _ if first.is_whitespace() => length_while(&char::is_whitespace),
+        _ if is_word(first) => length_while(&is_word),
+        _ if is_sign(first) => length_while(&is_sign),
         _ => first.len_utf8(),
     }
 }
@@ -198,8 +199,8 @@ fn parse_figure_condition(words: &mut TokenReader<'_>) -> Result<Condition, Cond
     let (measure, column) = words.parse_name(Measure::ALL, Measure::id, "a figure")?;
     let group = words.parse_group()?;
     let early = words.parse_day_count()?;
-    let judgement = parse_predicate(words)?;
-    check_share_threshold(measure, &judgement, column)?;
+    let predicate = parse_predicate(words)?;
+    check_share_threshold(measure, &predicate, column)?;
     let days = match early {
         Some(days) => Some(days),
         None => words.parse_day_count()?,
@@ -213,7 +214,7 @@ fn parse_figure_condition(words: &mut TokenReader<'_>) -> Result<Condition, Cond
         };
         ConditionParseError { message: describe_quantity_error(measure.id(), no), column }
     })?;
-    Ok(match judgement {
+    Ok(match predicate {
         FigurePredicate::Compared(relation, threshold) => Condition::Compared(quantity, relation, threshold),
         FigurePredicate::Changed(direction) => Condition::Changed(quantity, direction),
     })
@@ -255,13 +256,13 @@ fn parse_predicate(words: &mut TokenReader<'_>) -> Result<FigurePredicate, Condi
     words.parse_number().map(|threshold| FigurePredicate::Compared(relation, threshold))
 }
 
-/// Rejects a share above 1, which was probably meant as a percentage.
+/// Rejects a threshold above 1 for a share. The user probably meant a percentage.
 fn check_share_threshold(
     measure: Measure,
-    judgement: &FigurePredicate,
+    predicate: &FigurePredicate,
     column: usize,
 ) -> Result<(), ConditionParseError> {
-    match (measure.kind(), judgement) {
+    match (measure.kind(), predicate) {
         (MeasureKind::Share(_), FigurePredicate::Compared(_, threshold)) if threshold.abs() > 1.0 => {
             let message = format!("{} is a share from 0 to 1; write {threshold}%", measure.id());
             Err(ConditionParseError { message, column })

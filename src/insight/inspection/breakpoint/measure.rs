@@ -7,7 +7,7 @@ use novamind_record::figures::GroupFigures;
 use novamind_record::figures::churn;
 use novamind_world::identifiers::Group;
 
-/// How a figure relates to time.
+/// The relation of a figure to time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeasureKind {
     /// The value at the end of a day.
@@ -33,7 +33,7 @@ macro_rules! measures {
             /// All daily figures that a condition can use.
             pub const ALL: &'static [Measure] = &[$(Measure::$measure),*];
 
-            /// Returns the identifier of the figure in conditions and data.
+            /// Returns the identifier that conditions and data use for the figure.
             pub fn id(self) -> &'static str {
                 match self { $(Measure::$measure => $id),* }
             }
@@ -152,7 +152,7 @@ impl Quantity {
         self.days
     }
 
-    /// Returns the explicit number of days as text, for example ` over 7`.
+    /// Returns the number of days as conditions write it, for example ` over 7`; empty for the value of one day.
     pub fn describe_days(&self) -> String {
         match (self.measure.kind(), self.days) {
             (MeasureKind::State, _) | (MeasureKind::Flow, 1) => String::new(),

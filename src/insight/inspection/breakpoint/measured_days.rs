@@ -38,13 +38,13 @@ impl MeasuredDay {
         }
     }
 
-    /// Number of active subscribers with an open issue.
+    /// Returns the number of active subscribers with an open issue.
     pub(crate) fn open_issues(&self) -> u32 {
         Group::all().map(|group| self.groups[group].open_issues).sum()
     }
 }
 
-/// Records the figures of consecutive days from day 1.
+/// The recorded figures of consecutive days, from day 1.
 #[derive(Debug, Default)]
 pub(crate) struct MeasuredDays {
     recorded: Mutex<RecordedMeasurements>,

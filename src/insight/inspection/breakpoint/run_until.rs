@@ -13,16 +13,16 @@ use novamind_tools::Rejection;
 /// A breakpoint whose condition became true.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BreakpointHit {
-    /// The breakpoint that was reached.
+    /// The breakpoint, with its number and condition.
     pub breakpoint: Breakpoint,
-    /// State of the breakpoint's condition.
+    /// State of the condition on the evaluated day.
     pub state: ConditionState,
 }
 
 /// The simulated days and the breakpoints that stopped the simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BreakpointRun {
-    /// First simulated day.
+    /// Day at the end of which the simulation started; the next day is the first simulated day.
     pub from: u32,
     /// Figures of the last week, and notifications of all days.
     pub week: WeekResult,
@@ -101,13 +101,13 @@ impl Inspector<'_> {
         let known = &self.cache.breakpoints.measured_days;
         let shows_past = known.last_day() < from;
         let series = if shows_past { Arc::default() } else { known.clone() };
-        let goes_on = |day: u32| find_hit_breakpoints(day, &set, &series).is_empty();
+        let should_continue = |day: u32| find_hit_breakpoints(day, &set, &series).is_empty();
         let looks = ("breakpoint", set.iter().map(|breakpoint| breakpoint.condition.to_string()).collect());
         let watched = ObservedDays {
             days,
             watch: series.clone(),
             replays_past_days: shows_past,
-            should_continue: &goes_on,
+            should_continue: &should_continue,
             inspections: looks,
         };
         let week = watched.simulate(self.run, progress)?;

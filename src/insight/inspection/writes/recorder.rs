@@ -13,7 +13,7 @@ use novamind_world::params::Params;
 use novamind_world::reputation::ReputationWrite;
 use novamind_world::state::World;
 
-/// Records the changes in a figure on one day.
+/// A recorder of the changes in a figure on one day.
 pub(super) struct WriteRecorder {
     target: WriteTarget,
     day: u32,
@@ -43,7 +43,7 @@ impl RecordedWrites {
         self.push_write(by, &[amount], before, before + amount);
     }
 
-    /// Merges consecutive changes by one mechanism.
+    /// Appends changes. Merges them with the previous changes if the same mechanism made both.
     fn push_write(&mut self, by: WriteSource, changes: &[f64], before: f64, after: f64) {
         match self.writes.last_mut().filter(|write| write.source == by) {
             Some(write) => {

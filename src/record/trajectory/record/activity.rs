@@ -57,7 +57,7 @@ pub struct ObjectSelection {
     pub screen: String,
     /// Kind of the object: `group`, `thread`, `tool`, `post`, `study`, `table`, `figure`, `command`.
     pub what: String,
-    /// Name of the object in tools and tables.
+    /// Name that tools and tables use for the object.
     pub which: String,
 }
 

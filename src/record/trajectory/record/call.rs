@@ -15,7 +15,7 @@ pub struct Call {
     pub tool: CalledTool,
     /// Arguments: parsed arguments of an accepted call, or unparsed arguments of a rejected call.
     pub args: Value,
-    /// Outcome of the call.
+    /// Result of an accepted call, or reason for a rejection.
     pub outcome: Outcome,
     /// Source of the call.
     pub via: Via,

@@ -9,7 +9,7 @@ use super::serialize_shortest_option;
 pub struct RecordedLessonEvent {
     /// Kind of the event.
     pub event: LessonEvent,
-    /// Number of the step, from 1.
+    /// Number of the step within the part, from 1.
     pub step: u32,
     /// Number of the attempt, hint or goal, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// An SQL statement that was executed in the database, with its outcome.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Query {
-    /// SQL statement.
+    /// SQL text that was executed.
     pub sql: String,
     /// Number of returned rows; `None` if the query failed.
     pub rows: Option<u64>,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// A change of the presence of the program or the user.
+/// A change in the presence of the program or of the user.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Presence {
     /// Kind of the event.
@@ -23,7 +23,7 @@ pub struct Presence {
     /// Size of the terminal, in columns and rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window: Option<(u16, u16)>,
-    /// Version of the program.
+    /// Version of the program that recorded the event.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub version: Option<String>,
     /// Milliseconds since the last key press, if the user was idle.

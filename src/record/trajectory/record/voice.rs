@@ -21,7 +21,7 @@ pub enum VoiceAnswer {
 /// Scores of the language model for a post of the player.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JudgedPost {
-    /// Number of the post.
+    /// Number of the post among the player's posts, from 1.
     pub post: u32,
     /// Day on which the post was published.
     pub posted: u32,
@@ -50,7 +50,7 @@ pub struct RewordedPosts {
 /// A reworded post.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RewordedPost {
-    /// Number of the post.
+    /// Number of the post among the posts that the player did not write, from 1.
     pub post: u32,
     /// Text of the post after rewording.
     pub text: String,

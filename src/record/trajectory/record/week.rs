@@ -14,7 +14,7 @@ use novamind_tools::Forecast;
 /// The player's submission before a week is simulated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Advance {
-    /// Rationale of the week.
+    /// The player's reasons for the decisions of the week.
     pub rationale: String,
     /// Forecasts of cash, one forecast for each horizon.
     pub forecasts: Vec<SubmittedForecast>,
@@ -39,9 +39,11 @@ pub fn has_naive_forecasts(forecasts: &[SubmittedForecast], days_left: u32) -> O
 /// of each forecast in days, and whether the forecast is naive. The program fills in forecasts that end after the last
 /// day, so these count only if no forecast ends within the run.
 pub fn is_naive_week(forecasts: impl Iterator<Item = (u32, bool)> + Clone, days_left: u32) -> bool {
-    let is_asked = |forecast: &(u32, bool)| forecast.0 <= days_left;
-    let asks_any = forecasts.clone().any(|forecast| is_asked(&forecast));
-    forecasts.filter(|forecast| is_asked(forecast) || !asks_any).any(|(_, is_naive)| is_naive)
+    let ends_within_run = |forecast: &(u32, bool)| forecast.0 <= days_left;
+    let any_ends_within_run = forecasts.clone().any(|forecast| ends_within_run(&forecast));
+    forecasts
+        .filter(|forecast| ends_within_run(forecast) || !any_ends_within_run)
+        .any(|(_, is_naive)| is_naive)
 }
 
 /// A submitted forecast as recorded in a line.
@@ -76,21 +78,21 @@ impl SubmittedForecast {
 pub struct ClosedDays {
     /// Number of simulated days.
     pub days_run: u32,
-    /// Figures of the simulated days, by name.
+    /// Visible figures of the simulated days, by JSON key.
     pub figures: Map<String, Value>,
     /// Cash after the simulated days, dollars.
     #[serde(serialize_with = "serialize_shortest")]
     pub cash: f64,
     /// Hash of the complete simulator state.
     pub state_hash: String,
-    /// Prefix of the hash of each part of the state, by name.
+    /// First digits of the hash of each part of the state, by name of the part.
     pub parts: BTreeMap<String, String>,
 }
 
 /// A parameter change in a debug run or a lesson.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Override {
-    /// Key of a parameter, or of a list or table of parameters: `table.key`, `group.S1.c_max_mean`.
+    /// Key of a parameter, a list or a table of parameters, for instance `group.S1.c_max_mean`.
     pub key: String,
     /// Value before the change.
     pub old: Value,
@@ -124,7 +126,7 @@ pub enum RunEndReason {
 }
 
 impl RunEndReason {
-    /// Returns the name of the reason in trajectories.
+    /// Returns the name that trajectories use for the reason.
     pub fn id(self) -> &'static str {
         match self {
             RunEndReason::Horizon => "horizon",
@@ -156,7 +158,7 @@ fn required_nullable<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Paren
 /// The output of a calculation before a week.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CalculationOutput {
-    /// Name of the calculation.
+    /// Name under which the player registered the calculation.
     pub name: String,
     /// Output of the calculation, truncated to the length that the dashboard shows.
     pub output: String,

@@ -6,7 +6,7 @@ use super::reference::{PartPlay, play_part, uses_rules};
 use crate::play::{RuleEvaluator, Session};
 use novamind_database::Cell;
 use novamind_record::lesson::{
-    Guess, GuessForm, LessonGoal, LessonProgress, Measurement, OutcomeTiming, Pitfall,
+    Guess, GuessForm, LessonGoal, LessonProgress, MeasurementSpec, OutcomeTiming, Pitfall,
 };
 use novamind_record::trajectory::record::{LessonEvent, RecordedLessonEvent};
 use novamind_tools::Rejection;
@@ -16,7 +16,7 @@ use novamind_tools::Rejection;
 /// # Errors
 /// The statement is rejected, or does not return one number.
 pub fn measure(
-    measurement: &Measurement,
+    measurement: &MeasurementSpec,
     session: &mut Session,
     from_day: u32,
 ) -> Result<Option<f64>, String> {
@@ -97,7 +97,7 @@ impl Session {
             else {
                 continue;
             };
-            let is_due = if guess.told == OutcomeTiming::Part { is_last } else { at == step };
+            let is_due = if guess.outcome_timing == OutcomeTiming::Part { is_last } else { at == step };
             if is_due {
                 let from = part.step_weeks(at).0 * self.params().run.days_per_week;
                 let outcome = self.guess_outcome(lesson_progress, guess, at, from);

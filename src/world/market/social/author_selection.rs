@@ -27,11 +27,11 @@ pub fn is_posting_day(day: u32, params: &Params) -> bool {
     }
 }
 
-/// Sum of the post weights of a block.
+/// Post weights of the subscribers in a block.
 pub struct BlockWeights {
     /// Satisfaction of each row of the block before today's update.
     before: Vec<f64>,
-    /// Sum of the post weights.
+    /// Sum of the post weights of all rows that have not been picked.
     weight: f64,
 }
 
@@ -40,10 +40,10 @@ pub fn weigh_block(
     group: Group,
     block: &Block,
     before: Vec<f64>,
-    scene: &OpinionContext<'_>,
+    context: &OpinionContext<'_>,
 ) -> BlockWeights {
     let weight =
-        before.iter().enumerate().map(|(at, before)| row_weight(scene, group, block, at, *before)).sum();
+        before.iter().enumerate().map(|(at, before)| row_weight(context, group, block, at, *before)).sum();
     BlockWeights { before, weight }
 }
 
@@ -66,65 +66,67 @@ pub struct AuthorSelection {
     remaining_posts: usize,
 }
 
-/// Starts the selection among all subscribers, directly after the satisfaction update. `voices` has one element per
-/// non-empty block, in block order.
+/// Starts the selection among all subscribers, directly after the satisfaction update. `weights_by_block` has one element for
+/// each non-empty block, in block order.
 pub fn from_subscribers(
-    mut voices: Vec<BlockWeights>,
+    mut weights_by_block: Vec<BlockWeights>,
     customers: &Customers,
-    scene: &OpinionContext<'_>,
+    context: &OpinionContext<'_>,
     streams: &Streams,
 ) -> AuthorSelection {
-    let mut stream = streams.open(Part::CustomerPosts, [u64::from(scene.day.day())]);
-    let places = scene.day.params.social.max_posts_per_day as usize;
+    let mut stream = streams.open(Part::CustomerPosts, [u64::from(context.day.day())]);
+    let max_posts = context.day.params.social.max_posts_per_day as usize;
     let blocks: Vec<(Group, &Block)> = customers.blocks().collect();
     let mut picked: Vec<(usize, usize)> = Vec::new();
     let (mut candidates, mut time) = (Vec::new(), 0.0);
-    while candidates.len() < places {
-        let total: f64 = voices.iter().map(|block_weights| block_weights.weight).sum();
+    while candidates.len() < max_posts {
+        let total: f64 = weights_by_block.iter().map(|block_weights| block_weights.weight).sum();
         if total <= 0.0 {
             break;
         }
         time += stream.exponential(1.0 / total);
         let target = stream.uniform() * total;
-        let taken = |number: usize, at: usize| picked.contains(&(number, at));
-        let Some((number, at)) = find_row(&blocks, &voices, target, scene, taken) else { break };
+        let is_picked = |number: usize, at: usize| picked.contains(&(number, at));
+        let Some((number, at)) = find_row(&blocks, &weights_by_block, target, context, is_picked) else {
+            break;
+        };
         picked.push((number, at));
         let (group, block) = blocks[number];
-        let weights = &mut voices[number];
+        let weights = &mut weights_by_block[number];
         let contribution = weights.before[at];
-        weights.weight = (weights.weight - row_weight(scene, group, block, at, contribution)).max(0.0);
+        weights.weight = (weights.weight - row_weight(context, group, block, at, contribution)).max(0.0);
         candidates.push(Candidate {
             time,
             customer: block.customer[at],
             group,
             n: block.n[at],
             satisfaction: Some(block.satisfaction[at]),
-            opinion: scene.opinion(group, block, at, contribution, stream.uniform()),
+            opinion: context.opinion(group, block, at, contribution, stream.uniform()),
         });
     }
-    AuthorSelection { stream, candidates, remaining_posts: places }
+    AuthorSelection { stream, candidates, remaining_posts: max_posts }
 }
 
 #[inline]
-fn row_weight(scene: &OpinionContext<'_>, group: Group, block: &Block, at: usize, before: f64) -> f64 {
-    post_weight(&scene.weight_inputs(group, block, at, before), &scene.day.params.social)
+fn row_weight(context: &OpinionContext<'_>, group: Group, block: &Block, at: usize, before: f64) -> f64 {
+    post_weight(&context.weight_inputs(group, block, at, before), &context.day.params.social)
 }
 
 /// Returns the first row at which the running sum of the remaining rows' weights exceeds the target. If rounding keeps
 /// the sum below the target, returns the last row.
 fn find_row(
     blocks: &[(Group, &Block)],
-    voices: &[BlockWeights],
+    weights_by_block: &[BlockWeights],
     mut target: f64,
-    scene: &OpinionContext<'_>,
-    taken: impl Fn(usize, usize) -> bool,
+    context: &OpinionContext<'_>,
+    is_picked: impl Fn(usize, usize) -> bool,
 ) -> Option<(usize, usize)> {
     let mut last = None;
-    for (number, ((group, block), block_weights)) in blocks.iter().zip(voices).enumerate() {
+    for (number, ((group, block), block_weights)) in blocks.iter().zip(weights_by_block).enumerate() {
         if block_weights.weight <= 0.0 {
             continue;
         }
-        let mut rows = (0..block.len()).filter(|at| !taken(number, *at));
+        let mut rows = (0..block.len()).filter(|at| !is_picked(number, *at));
         if target >= block_weights.weight {
             target -= block_weights.weight;
             last = rows.next_back().map(|at| (number, at)).or(last);
@@ -132,7 +134,7 @@ fn find_row(
         }
         for at in rows {
             last = Some((number, at));
-            target -= row_weight(scene, *group, block, at, block_weights.before[at]);
+            target -= row_weight(context, *group, block, at, block_weights.before[at]);
             if target < 0.0 {
                 return last;
             }
@@ -145,17 +147,17 @@ impl AuthorSelection {
     /// Adds individuals who cancelled today and enterprises that were lost today as candidates.
     pub fn add_departed(
         &mut self,
-        gave_up: &[CancelledIndividual],
+        cancelled: &[CancelledIndividual],
         lost: &[LostEnterprise],
         params: &Params,
     ) {
         let social_params = &params.social;
-        for cancelled_individual in gave_up {
+        for cancelled_individual in cancelled {
             let weight = cancelled_weight(cancelled_individual.satisfaction, 1.0, social_params);
             let theme = if cancelled_individual.satisfaction < 0.0 { Theme::Quality } else { Theme::Price };
             let opinion = Opinion {
                 cause: PostCause::Cancelled,
-                troubles: CustomerProblems::default(),
+                customer_problems: CustomerProblems::default(),
                 theme,
                 days_subscribed: cancelled_individual.days_subscribed,
                 plan: Some(cancelled_individual.plan),
@@ -179,7 +181,7 @@ impl AuthorSelection {
                     thread: lost_enterprise.kind,
                     unanswered: lost_enterprise.failure == ThreadFailure::Timeout,
                 },
-                troubles: CustomerProblems::default(),
+                customer_problems: CustomerProblems::default(),
                 theme: Theme::Support,
                 days_subscribed: lost_enterprise
                     .days_subscribed
@@ -205,7 +207,7 @@ impl AuthorSelection {
         self.candidates.push(Candidate { time, customer, group, n, satisfaction: None, opinion });
     }
 
-    /// Publishes the posts of the candidates whose clocks ring first.
+    /// Publishes the posts of the candidates with the earliest clock times.
     pub fn publish(mut self, social: &mut Social, params: &Params, streams: &Streams, facts: &mut Facts) {
         self.candidates.sort_by(|one, other| one.time.total_cmp(&other.time));
         self.candidates.truncate(self.remaining_posts);
@@ -240,7 +242,13 @@ pub fn post_author(
 ) -> PostAuthor {
     // The deal velocity (1.0) does not affect the profile.
     let persona = draw_traits(group, n, 1.0, params, streams).persona;
-    PostAuthor { customer, group, n, persona, company: if group.is_enterprise() { seats } else { 0 } }
+    PostAuthor {
+        customer,
+        group,
+        n,
+        persona,
+        enterprise_seats: if group.is_enterprise() { seats } else { 0 },
+    }
 }
 
 #[cfg(test)]
@@ -263,7 +271,7 @@ mod tests {
     /// Returns the posts of a posting day with the given subscribers and customers who left.
     fn posts(
         rows: &[Subscriber],
-        gave_up: &[CancelledIndividual],
+        cancelled: &[CancelledIndividual],
         lost: &[LostEnterprise],
         seed: u64,
     ) -> Vec<Post> {
@@ -276,17 +284,17 @@ mod tests {
         let day = morning(70);
         let chronicle = social.chronicle.clone();
         let quiet = ServiceDay::without_load();
-        let mut crowd = with_day_context(&day, &settings, &quiet, (params, &streams), |day| {
-            let scene = OpinionContext { day, chronicle: &chronicle };
+        let mut selection = with_day_context(&day, &settings, &quiet, (params, &streams), |day| {
+            let context = OpinionContext { day, chronicle: &chronicle };
             let satisfaction_of = |block: &Block| block.satisfaction.clone();
-            let voices = customers
-                .map_blocks(|group, block| weigh_block(group, block, satisfaction_of(block), &scene));
-            from_subscribers(voices, &customers, &scene, &streams)
+            let weights_by_block = customers
+                .map_blocks(|group, block| weigh_block(group, block, satisfaction_of(block), &context));
+            from_subscribers(weights_by_block, &customers, &context, &streams)
         });
-        crowd.add_departed(gave_up, lost, params);
+        selection.add_departed(cancelled, lost, params);
         let mut facts = Facts::default();
         facts.start_day(70);
-        crowd.publish(&mut social, params, &streams, &mut facts);
+        selection.publish(&mut social, params, &streams, &mut facts);
         facts.posts
     }
 
@@ -360,7 +368,11 @@ mod tests {
     #[test]
     fn departed_customers_complain_with_cause() {
         let found = posts(&[], &[cancelled_individual()], &[lost_company()], 3);
-        assert_eq!(found[0].author.map(|author| author.company), Some(120), "the weights are 960 and 15");
+        assert_eq!(
+            found[0].author.map(|author| author.enterprise_seats),
+            Some(120),
+            "the weights are 960 and 15"
+        );
         assert!(found.iter().all(|post| post.sentiment == Sentiment::Negative));
         let causes: Vec<PostCause> = found
             .iter()

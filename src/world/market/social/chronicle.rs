@@ -20,11 +20,11 @@ pub struct Chronicle {
 /// The record of one day of the company.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
-    /// Day of the page.
+    /// Day that the page describes.
     pub day: u32,
     /// Sum of general bonus and group bonus, by group.
     pub bonus: ByGroup<f64>,
-    /// General bonus.
+    /// General bonus, which applies to all groups.
     pub shared_bonus: f64,
     /// List prices, dollars per month.
     pub prices: ByPlan<f64>,

@@ -7,16 +7,16 @@ use crate::random::Stream;
 /// Random draws for the engagement of a post: base likes, base shares and uniform draws, in draw order.
 #[derive(Debug, Clone, Copy)]
 pub struct EngagementDraws {
-    /// Base number of likes.
+    /// Number of likes before the engagement factor is applied.
     pub likes: u32,
-    /// Base number of shares.
+    /// Number of shares before the engagement factor is applied.
     pub shares: u32,
     /// Uniform draw of the engagement factor.
     pub factor: f64,
     /// Uniform draw that decides whether the post goes viral.
     pub spike: f64,
     /// Uniform draws of a viral spike: score, likes and shares.
-    pub explosion: [f64; 3],
+    pub spike_draws: [f64; 3],
 }
 
 /// Returns the engagement of a customer's post.
@@ -31,7 +31,7 @@ pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, params: &Social
     let reach = (likes + params.virality_share_weight * shares) / params.virality_score_divisor * factor;
     let mut virality = reach.min(params.virality_score_max);
     if draws.spike < params.viral_spike_probability {
-        let [score, more_likes, more_shares] = draws.explosion;
+        let [score, more_likes, more_shares] = draws.spike_draws;
         virality = (virality * (params.viral_spike_score_base + params.viral_spike_score_range * score))
             .min(params.virality_score_max);
         likes *= (params.viral_spike_likes_base + params.viral_spike_likes_range * more_likes).trunc();
@@ -67,8 +67,8 @@ pub fn draw_engagement(
     let [likes, shares] = engagement_ranges(group_id, params);
     let (likes, shares) = (stream.integer(likes.0, likes.1), stream.integer(shares.0, shares.1));
     let (factor, spike) = (stream.uniform(), stream.uniform());
-    let explosion = [stream.uniform(), stream.uniform(), stream.uniform()];
-    let draws = EngagementDraws { likes, shares, factor, spike, explosion };
+    let spike_draws = [stream.uniform(), stream.uniform(), stream.uniform()];
+    let draws = EngagementDraws { likes, shares, factor, spike, spike_draws };
     engagement(sentiment, &draws, &params.social)
 }
 
@@ -86,7 +86,7 @@ mod tests {
             (Sentiment::Neutral, 80, 20, [0.5, 0.005, 0.5, 0.5, 0.5], (420, 60, 1.0)),
             (Sentiment::Negative, 80, 20, [0.5, 0.005, 0.99, 0.2, 0.2], (960, 120, 1.0)),
         ] {
-            let draws = EngagementDraws { likes, shares, factor, spike, explosion: [a, b, c] };
+            let draws = EngagementDraws { likes, shares, factor, spike, spike_draws: [a, b, c] };
             let reactions = engagement(tone, &draws, &params);
             assert_eq!(
                 (reactions.likes, reactions.shares),

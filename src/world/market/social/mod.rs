@@ -24,7 +24,7 @@ use own_posts::OwnPost;
 pub struct Social {
     /// Number of the next post that the player does not write.
     pub next_post: u32,
-    /// Posts of the player.
+    /// Posts of the player. Post n is at index n - 1.
     pub own: Vec<OwnPost>,
     /// Day of the next round of posts about the economy; `None` before the first day.
     pub next_round: Option<u32>,

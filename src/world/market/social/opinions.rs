@@ -13,7 +13,7 @@ use crate::quality::{quota_demand, quota_factor, relationship_as_read, relations
 /// Inputs that all opinions of a day share.
 #[derive(Clone, Copy)]
 pub struct OpinionContext<'a> {
-    /// Context of the day.
+    /// Values that all customer mechanisms of the day share.
     pub day: &'a DayContext<'a>,
     /// Record of the company's last four weeks.
     pub chronicle: &'a Chronicle,
@@ -56,17 +56,17 @@ impl OpinionContext<'_> {
 
     /// Returns the opinion of the subscriber in a row. `u` is a uniform draw.
     pub fn opinion(&self, group: Group, block: &Block, at: usize, before: f64, u: f64) -> Opinion {
-        let troubles = self.customer_problems(block, at);
+        let customer_problems = self.customer_problems(block, at);
         let change = block.satisfaction[at] - before;
-        let worths = if block.satisfaction[at] < 0.0 {
+        let theme_weights = if block.satisfaction[at] < 0.0 {
             self.complaint_weights(group, block, at)
         } else {
             self.praise_weights(group, block, at)
         };
         Opinion {
-            cause: post_cause(troubles, change, &self.day.params.social),
-            troubles,
-            theme: pick_theme(&worths, u),
+            cause: post_cause(customer_problems, change, &self.day.params.social),
+            customer_problems,
+            theme: pick_theme(&theme_weights, u),
             days_subscribed: self.day.day() - block.start_day[at],
             plan: Some(block.plan[at]),
             price: block.effective_price[at],
@@ -140,8 +140,8 @@ impl OpinionContext<'_> {
 }
 
 /// Returns the cause of a post: the first problem, otherwise a change in satisfaction, otherwise `General`.
-pub fn post_cause(troubles: CustomerProblems, change: f64, params: &SocialParams) -> PostCause {
-    match troubles {
+pub fn post_cause(customer_problems: CustomerProblems, change: f64, params: &SocialParams) -> PostCause {
+    match customer_problems {
         CustomerProblems { overload: true, .. } => PostCause::Overload,
         CustomerProblems { outage: true, .. } => PostCause::Outage,
         CustomerProblems { issue: true, .. } => PostCause::Issue,
@@ -153,10 +153,10 @@ pub fn post_cause(troubles: CustomerProblems, change: f64, params: &SocialParams
 }
 
 /// Picks a theme by weight with a uniform draw `u`. Returns `Quality` if all weights are zero.
-pub fn pick_theme(worths: &[(Theme, f64)], u: f64) -> Theme {
-    let total: f64 = worths.iter().map(|(_, worth)| worth).sum();
+pub fn pick_theme(theme_weights: &[(Theme, f64)], u: f64) -> Theme {
+    let total: f64 = theme_weights.iter().map(|(_, worth)| worth).sum();
     let mut left = u * total;
-    for (theme, worth) in worths {
+    for (theme, worth) in theme_weights {
         if left < *worth {
             return *theme;
         }
@@ -175,7 +175,7 @@ mod tests {
         let params = Params::bundled().social;
         let none = CustomerProblems::default();
         let all = CustomerProblems { overload: true, outage: true, issue: true, quota: true };
-        for (troubles, change, expected) in [
+        for (customer_problems, change, expected) in [
             (all, 0.5, PostCause::Overload),
             (CustomerProblems { overload: false, ..all }, 0.5, PostCause::Outage),
             (CustomerProblems { issue: true, quota: true, ..none }, 0.0, PostCause::Issue),
@@ -184,17 +184,21 @@ mod tests {
             (none, -0.02, PostCause::Declined),
             (none, 0.019, PostCause::General),
         ] {
-            assert_eq!(post_cause(troubles, change, &params), expected, "{troubles:?} {change}");
+            assert_eq!(
+                post_cause(customer_problems, change, &params),
+                expected,
+                "{customer_problems:?} {change}"
+            );
         }
         assert_eq!(all.count(), 4);
     }
 
     #[test]
     fn themes_are_picked_by_weight() {
-        let worths = [(Theme::Price, 0.1), (Theme::Rivals, 0.0), (Theme::Quality, 0.3)];
-        assert_eq!(pick_theme(&worths, 0.0), Theme::Price);
-        assert_eq!(pick_theme(&worths, 0.24), Theme::Price);
-        assert_eq!(pick_theme(&worths, 0.26), Theme::Quality);
+        let theme_weights = [(Theme::Price, 0.1), (Theme::Rivals, 0.0), (Theme::Quality, 0.3)];
+        assert_eq!(pick_theme(&theme_weights, 0.0), Theme::Price);
+        assert_eq!(pick_theme(&theme_weights, 0.24), Theme::Price);
+        assert_eq!(pick_theme(&theme_weights, 0.26), Theme::Quality);
         assert_eq!(pick_theme(&[(Theme::Ads, 0.0)], 0.5), Theme::Quality);
     }
 }

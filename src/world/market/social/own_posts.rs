@@ -7,17 +7,17 @@ use crate::params::CeoPosts;
 /// A post of the player.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnPost {
-    /// Day of the post.
+    /// Day on which the player published the post.
     pub day: u32,
     /// Text of the post: at most 280 code points, not blank.
     pub content: String,
-    /// Number of the post to which the player replies.
+    /// Number of the post to which the player replies; `None` if the post is not a reply.
     pub reply_to: Option<u32>,
     /// Reaction of each group, -1..=1, or 0 for unknown groups. `None` before the post is judged.
     pub effects: Option<ByGroup<f64>>,
-    /// Number of views of the post.
+    /// Number of views of the post; 0 before the post is judged.
     pub views: u64,
-    /// Numbers of the comments on the post.
+    /// Numbers of the comments on the post; empty before the post is judged.
     pub comments: Vec<u32>,
 }
 

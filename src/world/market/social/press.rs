@@ -105,9 +105,9 @@ pub fn write_economy_posts(
         let draws = [stream.uniform(), stream.uniform(), stream.uniform()];
         social.publish(None, economy_tone(trend), economy_engagement(draws, macro_economy), matter, facts);
     };
-    let news =
+    let is_published_today =
         |reading: &&Reading| reading.measured_day + macro_economy.macro_pmi_publication_delay_days == day;
-    if let Some(reading) = economy.published.as_ref().filter(news) {
+    if let Some(reading) = economy.published.as_ref().filter(is_published_today) {
         write(social, &mut stream, reading.trend, PostSubject::Reading(*reading));
     }
     let next = *social.next_round.get_or_insert_with(|| {
@@ -182,9 +182,9 @@ mod tests {
                 facts.posts.iter().filter(|post| matches!(post.matter, PostSubject::Reading(_))).count();
             assert_eq!(published, facts.readings.len());
             readings += published;
-            let voices = facts.posts.len() - published;
-            if voices > 0 {
-                assert!((2..=8).contains(&voices));
+            let opinion_posts = facts.posts.len() - published;
+            if opinion_posts > 0 {
+                assert!((2..=8).contains(&opinion_posts));
                 rounds.push(day);
             }
         }

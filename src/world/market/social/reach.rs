@@ -12,7 +12,7 @@ use crate::random::{Part, Stream, Streams};
 /// Reactions of the known groups to a post of the player.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PostReactions {
-    /// Number of the post, from 1.
+    /// Number of the post among the player's posts, from 1.
     pub post: u32,
     /// Reactions of the known groups, -1..=1, in group order.
     pub effects: Vec<(Group, f64)>,
@@ -43,8 +43,8 @@ pub fn apply_reactions(
     facts: &mut Facts,
 ) {
     for verdict in verdicts {
-        let known = |post: u32| post >= 1 && post as usize <= social.own.len();
-        if known(verdict.post) {
+        let post_exists = |post: u32| post >= 1 && post as usize <= social.own.len();
+        if post_exists(verdict.post) {
             apply_post_reactions(social, customers, verdict, params, streams, facts);
         }
     }

@@ -24,28 +24,28 @@ pub struct PostWeightInputs {
 
 /// Returns the post weight of a subscriber.
 #[inline]
-pub fn post_weight(voice: &PostWeightInputs, params: &SocialParams) -> f64 {
-    let s = voice.satisfaction;
+pub fn post_weight(inputs: &PostWeightInputs, params: &SocialParams) -> f64 {
+    let s = inputs.satisfaction;
     let mut weight = 1.0 + params.weight_abs_satisfaction_coef * s.abs();
     if s < 0.0 {
         weight *= 1.0 + params.weight_negative_satisfaction_sq_coef * s * s;
     }
-    if voice.influencer {
+    if inputs.influencer {
         weight *= params.weight_influencer_multiplier;
     }
-    if voice.days_subscribed <= params.weight_new_customer_max_days {
+    if inputs.days_subscribed <= params.weight_new_customer_max_days {
         weight *= params.weight_new_customer_multiplier;
     }
-    if voice.change.abs() >= params.satisfaction_change_threshold {
-        weight *= 1.0 + params.weight_satisfaction_change_coef * voice.change.abs();
+    if inputs.change.abs() >= params.satisfaction_change_threshold {
+        weight *= 1.0 + params.weight_satisfaction_change_coef * inputs.change.abs();
     }
-    if voice.events > 0 {
-        weight *= 1.0 + params.weight_active_event_coef * f64::from(voice.events);
+    if inputs.events > 0 {
+        weight *= 1.0 + params.weight_active_event_coef * f64::from(inputs.events);
     }
-    if voice.contract_locked {
+    if inputs.contract_locked {
         weight *= params.contract_dissatisfaction_reputation_multiplier;
     }
-    replace_nonfinite(weight * voice.seats.max(1.0), params)
+    replace_nonfinite(weight * inputs.seats.max(1.0), params)
 }
 
 /// Returns the post weight of an individual who cancelled today.
@@ -85,7 +85,7 @@ mod tests {
     #[test]
     fn post_weight_multiplies_its_factors() {
         let params = Params::bundled().social;
-        for (voice, expected) in [
+        for (inputs, expected) in [
             (PLAIN, 1.0),
             (PostWeightInputs { satisfaction: 0.3, ..PLAIN }, 4.0),
             (PostWeightInputs { satisfaction: -0.3, ..PLAIN }, 11.2),
@@ -114,8 +114,8 @@ mod tests {
             ),
             (PostWeightInputs { satisfaction: -40.0, ..PLAIN }, 12_832_401.0),
         ] {
-            let weight = post_weight(&voice, &params);
-            assert!((weight / expected - 1.0).abs() < 1e-12, "{voice:?}: got {weight}, expected {expected}");
+            let weight = post_weight(&inputs, &params);
+            assert!((weight / expected - 1.0).abs() < 1e-12, "{inputs:?}: got {weight}, expected {expected}");
         }
         assert_eq!(cancelled_weight(-0.2, 1.0, &params), 15.0);
         assert_eq!(cancelled_weight(0.3, 1.0, &params), 5.0);

@@ -91,7 +91,8 @@ impl Params {
     }
 
     fn to_tables(&self) -> Table {
-        Table::try_from(self).unwrap_or_default()
+        // The way through JSON needs no second serializer for every type of parameters.
+        serde_json::to_value(self).ok().and_then(|json| Table::try_from(json).ok()).unwrap_or_default()
     }
 }
 

@@ -6,6 +6,7 @@
 mod change;
 mod check;
 mod customers;
+pub(crate) mod deserializer;
 mod discovery;
 mod enterprise;
 mod load;

@@ -1,10 +1,12 @@
 //! Changes to parameters during a run.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use toml::{Table, Value};
 
 use super::Params;
 use super::load::{ParameterError, apply_override, from_tables};
-use super::names::{keys, nearest_keys, value_at};
+use super::names::{entries, nearest_keys, value_at};
 
 /// Parameters, tables and lists that cannot change during a run. These keys take effect only at the start of a run, or
 /// define texts that are already recorded.
@@ -78,16 +80,18 @@ impl Params {
             return Vec::new();
         }
         let (tables, other) = (self.to_tables(), other.to_tables());
-        let mut all = keys(&tables);
-        all.extend(keys(&other));
-        all.sort_unstable();
-        all.dedup();
-        let difference = |key: String| ParameterDifference {
-            old: value_at(&tables, &key).cloned(),
-            new: value_at(&other, &key).cloned(),
-            key,
-        };
-        all.into_iter().map(difference).filter(|found| found.old != found.new).collect()
+        let old: BTreeMap<String, &Value> = entries(&tables).into_iter().collect();
+        let new: BTreeMap<String, &Value> = entries(&other).into_iter().collect();
+        let all: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
+        let changed = all.into_iter().filter(|key| old.get(*key) != new.get(*key));
+        let value_in = |all: &BTreeMap<String, &Value>, key| all.get(key).map(|value| Value::clone(value));
+        changed
+            .map(|key| ParameterDifference {
+                old: value_in(&old, key),
+                new: value_in(&new, key),
+                key: key.clone(),
+            })
+            .collect()
     }
 
     fn to_tables(&self) -> Table {

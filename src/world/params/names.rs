@@ -59,23 +59,28 @@ pub(super) fn value_at<'a>(tables: &'a Table, key: &str) -> Option<&'a Value> {
 
 /// Returns the keys of all parameters.
 pub(crate) fn keys(tables: &Table) -> Vec<String> {
+    entries(tables).into_iter().map(|(key, _)| key).collect()
+}
+
+/// Returns all parameters with their keys.
+pub(super) fn entries(tables: &Table) -> Vec<(String, &Value)> {
     let mut all = Vec::new();
-    tables.iter().for_each(|(key, value)| collect_keys(key.clone(), value, &mut all));
+    tables.iter().for_each(|(key, value)| collect_entries(key.clone(), value, &mut all));
     all
 }
 
-fn collect_keys(path: String, value: &Value, all: &mut Vec<String>) {
+fn collect_entries<'a>(path: String, value: &'a Value, all: &mut Vec<(String, &'a Value)>) {
     match value {
         Value::Table(table) => {
-            table.iter().for_each(|(key, inner)| collect_keys(format!("{path}.{key}"), inner, all));
+            table.iter().for_each(|(key, inner)| collect_entries(format!("{path}.{key}"), inner, all));
         }
         Value::Array(list) => {
             let inner = list.iter().enumerate();
             inner.for_each(|(at, inner)| {
-                collect_keys(format!("{path}.{}", element_name(list, at)), inner, all)
+                collect_entries(format!("{path}.{}", element_name(list, at)), inner, all)
             });
         }
-        _ => all.push(path),
+        _ => all.push((path, value)),
     }
 }
 

@@ -2,6 +2,7 @@
 //! Hidden state stays hidden.
 
 use std::ops::ControlFlow;
+use std::sync::LazyLock;
 
 use serde_json::json;
 
@@ -454,48 +455,60 @@ fn one_time_purchase_of_the_week_before_is_a_cause() {
     assert_eq!(earlier(&explain(&session, company_quantity(WeekFigure::Leads))), None);
 }
 
-/// Plays the company of the tests with a seed and explains a figure in three weeks without changed settings.
-fn explain_unchanged_weeks(seed: u64, quantity: WeekQuantity) -> Vec<ChangeExplanation> {
+/// Explanations of three figures in a week without changed settings.
+struct UnchangedWeek {
+    seed: u64,
+    leads: ChangeExplanation,
+    conversion: ChangeExplanation,
+    new_subscribers: ChangeExplanation,
+}
+
+/// Plays the company of the tests with a seed, and explains three of its weeks.
+fn explain_unchanged_weeks(seed: u64) -> [UnchangedWeek; 3] {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_weeks(runs.path(), Mode::Debug, seed, None);
     let mut causes = open_causes(&session);
-    let explain = |week: u32| {
-        causes
-            .explain(WeekQuestion { quantity, week: Some(week) }, &continue_progress)
-            .expect("an answer")
-            .expect("it is not stopped")
-    };
-    [4, 6, 8].map(explain).into()
+    // The analysis keeps the re-simulations of a week for the next figure.
+    [4, 6, 8].map(|week| {
+        let mut explain = |figure| {
+            let question = WeekQuestion { quantity: company_quantity(figure), week: Some(week) };
+            causes.explain(question, &continue_progress).expect("an answer").expect("it is not stopped")
+        };
+        UnchangedWeek {
+            seed,
+            leads: explain(WeekFigure::IndividualLeads),
+            conversion: explain(WeekFigure::Conversion),
+            new_subscribers: explain(WeekFigure::NewSubscribers),
+        }
+    })
 }
+
+/// Explained weeks of four companies, which two tests share.
+static UNCHANGED_WEEKS: LazyLock<[[UnchangedWeek; 3]; 4]> =
+    LazyLock::new(|| [3, 4, 5, 6].map(explain_unchanged_weeks));
 
 #[test]
 fn continuing_development_explains_rising_conversion() {
     let development = Cause::Continued(SuspendedSetting::Development);
-    for seed in [3, 4, 5, 6] {
-        let leads = explain_unchanged_weeks(seed, company_quantity(WeekFigure::IndividualLeads));
-        let conversions = explain_unchanged_weeks(seed, company_quantity(WeekFigure::Conversion));
-        for (why, leads) in conversions.iter().zip(leads) {
-            assert_contributions_add_up(why);
-            assert!(why.total_change() > 0.0, "{why:#?}");
-            let first = &why.contributions[0];
-            assert_eq!(first.cause, development, "seed {seed}: {why:#?}");
-            let days = CauseDetail::Removed { first: (why.week - 2) * 7 + 1, last: why.week * 7 };
-            assert_eq!(first.details, [days]);
-            // Whether a lead subscribes is random, so the conversion of a week has a binomial error.
-            let variance = |share: f64, leads: f64| share * (1.0 - share) / leads;
-            let error = (variance(why.before, leads.before) + variance(why.after, leads.after)).sqrt();
-            assert!(why.residual.abs() < 2.5 * error, "seed {seed}, error {error}: {why:#?}");
-        }
+    for UnchangedWeek { seed, leads, conversion: why, .. } in UNCHANGED_WEEKS.as_flattened() {
+        assert_contributions_add_up(why);
+        assert!(why.total_change() > 0.0, "{why:#?}");
+        let first = &why.contributions[0];
+        assert_eq!(first.cause, development, "seed {seed}: {why:#?}");
+        let days = CauseDetail::Removed { first: (why.week - 2) * 7 + 1, last: why.week * 7 };
+        assert_eq!(first.details, [days]);
+        // Whether a lead subscribes is random, so the conversion of a week has a binomial error.
+        let variance = |share: f64, leads: f64| share * (1.0 - share) / leads;
+        let error = (variance(why.before, leads.before) + variance(why.after, leads.after)).sqrt();
+        assert!(why.residual.abs() < 2.5 * error, "seed {seed}, error {error}: {why:#?}");
     }
 }
 
 #[test]
 fn residual_of_new_subscribers_is_small_without_changed_settings() {
-    for seed in [3, 4, 5, 6] {
-        for why in explain_unchanged_weeks(seed, company_quantity(WeekFigure::NewSubscribers)) {
-            let explained: f64 = why.contributions.iter().map(|part| part.amount.abs()).sum();
-            assert!(why.residual.abs() < 0.2 * explained, "seed {seed}: {why:#?}");
-        }
+    for UnchangedWeek { seed, new_subscribers: why, .. } in UNCHANGED_WEEKS.as_flattened() {
+        let explained: f64 = why.contributions.iter().map(|part| part.amount.abs()).sum();
+        assert!(why.residual.abs() < 0.2 * explained, "seed {seed}: {why:#?}");
     }
 }
 

@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 
 use super::identifiers::{Channel, Group};
-use super::params::{Params, Replayed, deserializer};
+use super::params::{Params, Replayed};
 
 /// Series that were recorded in one run of the released simulator.
 #[derive(Debug, Deserialize)]
@@ -44,8 +44,7 @@ pub struct RecordedSurge {
 
 static SEED_42: LazyLock<Series> = LazyLock::new(|| {
     let text = include_str!("../../configs/series/seed42.toml");
-    let table = text.parse().expect("the bundled series is valid TOML");
-    deserializer::deserialize(&toml::Value::Table(table)).expect("the bundled series is valid")
+    toml::from_str(text).expect("the bundled series is valid")
 });
 
 impl Params {

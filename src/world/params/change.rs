@@ -95,8 +95,7 @@ impl Params {
     }
 
     fn to_tables(&self) -> Table {
-        // The way through JSON needs no second serializer for every type of parameters.
-        serde_json::to_value(self).ok().and_then(|json| Table::try_from(json).ok()).unwrap_or_default()
+        Table::try_from(self).unwrap_or_default()
     }
 }
 

@@ -7,7 +7,7 @@ use toml::de::DeValue;
 use toml::{Spanned, Table, Value};
 
 use super::names::{NAME_FIELDS, element_name, element_position, nearest_keys, replace_indexes_with_names};
-use super::{Params, check, deserializer};
+use super::{Params, check};
 use crate::identifiers::Group;
 
 /// A TOML text with parameters, and its name.
@@ -137,8 +137,7 @@ pub(super) fn from_tables(tables: Table) -> Result<Params, (String, String)> {
     let whole = Value::Table(tables.clone());
     check::check_ranges(&whole).map_err(with_names)?;
     check::check_bounds(&tables).map_err(with_names)?;
-    let params = deserializer::deserialize(&whole)
-        .map_err(|error| with_names((error.path(), plain_message(&error.message))))?;
+    let params = deserialize(whole).map_err(with_names)?;
     check::check_relations(&params).map_err(with_names)?;
     Ok(params)
 }
@@ -150,7 +149,15 @@ fn parse_source(source: &ParameterSource) -> Result<Table, ParameterError> {
         .map_err(|error| ParameterError::from_toml(&source.name, &source.text, &error))
 }
 
-/// Removes Rust type names from an error message of a deserializer.
+fn deserialize(tables: Value) -> Result<Params, (String, String)> {
+    serde_path_to_error::deserialize(tables).map_err(|error| {
+        // Convert list indexes in the parser's path, such as `group[0].c_max_mean`, to the form of parameter names.
+        let key = error.path().to_string().replace('[', ".").replace(']', "");
+        (key, plain_message(error.inner().message()))
+    })
+}
+
+/// Removes Rust type names from an error message of the TOML parser.
 fn plain_message(message: &str) -> String {
     let Some((found, expected)) = message.rsplit_once(", expected ") else { return message.to_owned() };
     let words = match expected {

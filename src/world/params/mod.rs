@@ -6,7 +6,6 @@
 mod change;
 mod check;
 mod customers;
-pub(crate) mod deserializer;
 mod discovery;
 mod enterprise;
 mod load;

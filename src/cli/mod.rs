@@ -7,6 +7,8 @@ mod class;
 mod completions;
 mod doctor;
 mod failure;
+#[cfg(all(feature = "server", unix))]
+mod host;
 mod keys;
 mod lab;
 mod lesson;
@@ -112,6 +114,9 @@ enum Command {
     /// Serve a run to a client of the Model Context Protocol on standard input and output
     #[cfg(feature = "server")]
     Mcp(mcp::Options),
+    /// Host sessions of a study on this machine: participants play in a browser or over ssh
+    #[cfg(all(feature = "server", unix))]
+    Host(host::Options),
     /// Measure how fast this machine simulates
     Bench(bench::Options),
     /// Check this machine and print what a bug report needs
@@ -146,6 +151,8 @@ impl Command {
             Command::Serve(_) => "serve",
             #[cfg(feature = "server")]
             Command::Mcp(_) => "mcp",
+            #[cfg(all(feature = "server", unix))]
+            Command::Host(_) => "host",
             Command::Bench(_) => "bench",
             Command::Doctor(_) => "doctor",
             Command::Completions(_) => "completions",
@@ -389,6 +396,11 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     #[cfg(feature = "server")]
     let arguments = pass_code_to_tool(arguments);
     ignore_file_size_signal();
+    // The host reads the files of the study itself, so it does not need the experimenter's code.
+    #[cfg(all(feature = "server", unix))]
+    if let Some(Command::Host(options)) = &arguments.command {
+        return host::run(options, arguments.study.as_deref());
+    }
     let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);
     let mut context = Context {
         configuration: Configuration::from_environment(),
@@ -447,6 +459,8 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Serve(options)) => serve::run(&options, &context),
         #[cfg(feature = "server")]
         Some(Command::Mcp(options)) => mcp::run(&options, &context),
+        #[cfg(all(feature = "server", unix))]
+        Some(Command::Host(options)) => host::run(&options, arguments.study.as_deref()),
         Some(Command::Bench(options)) => bench::run(&options, &context),
         Some(Command::Doctor(options)) => doctor::run(&options, &context),
         Some(Command::Completions(options)) => completions::run(&options),

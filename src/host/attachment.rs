@@ -170,6 +170,16 @@ impl Attachment {
         self.session.send_input(&self.queue, bytes);
     }
 
+    /// Requests the whole screen as the next output.
+    pub fn request_screen(&self) {
+        self.queue.update(|pending| pending.needs_screen = true);
+    }
+
+    /// Returns the number of processes that the session has had since the host started. It changes when a process starts.
+    pub fn process_number(&self) -> u64 {
+        self.session.process_number()
+    }
+
     /// Sets the size of the window.
     pub fn resize(&self, size: WindowSize) {
         self.session.resize(&self.queue, size);

@@ -9,7 +9,10 @@ use serde::{Deserialize, Serialize};
 use novamind_record::error::RunError;
 use novamind_record::files::write_atomically;
 use novamind_record::folder::configuration::CONSENT_FILE;
-use novamind_study::{ASSIGNMENT_FILE, Assignment, AssignmentRow, SEAL_KEY_FILE, STUDY_FILE, Study};
+use novamind_study::{ASSIGNMENT_FILE, Assignment, AssignmentRow, CodeDigest, SEAL_KEY_FILE, STUDY_FILE, Study};
+
+use crate::access::Access;
+use crate::audit::AuditLog;
 
 /// Name of the host folder in the folder of a study.
 pub const HOST_FOLDER: &str = "host";
@@ -26,6 +29,8 @@ pub struct HostFolder {
     path: PathBuf,
     study: Study,
     rows: Vec<AssignmentRow>,
+    url: Option<String>,
+    admin_code: Option<CodeDigest>,
 }
 
 /// The version of a program that plays sessions.
@@ -44,6 +49,12 @@ struct HostDescription {
     program: ProgramVersion,
     /// Digest of the study.
     study: String,
+    /// Address of the host in links, for example `https://play.example.org`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    url: Option<String>,
+    /// Salted digest of the code for the experimenter's page.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    admin_code: Option<CodeDigest>,
 }
 
 impl HostFolder {
@@ -61,7 +72,8 @@ impl HostFolder {
             ))
         })?;
         let path = study.folder.join(HOST_FOLDER);
-        let folder = HostFolder { path, study, rows: assignment.rows };
+        let mut folder =
+            HostFolder { path, study, rows: assignment.rows, url: None, admin_code: None };
         create_private_folder(&folder.path)?;
         create_private_folder(&folder.path.join(SESSIONS_FOLDER))?;
         folder.check_description(program)?;
@@ -95,13 +107,20 @@ impl HostFolder {
     }
 
     /// Compares `host.toml` with the program and the study. Writes the file if no session has started.
-    fn check_description(&self, program: &ProgramVersion) -> Result<(), RunError> {
+    fn check_description(&mut self, program: &ProgramVersion) -> Result<(), RunError> {
         let path = self.path.join(HOST_FILE);
-        let current = HostDescription { program: program.clone(), study: self.study.digest.clone() };
+        let mut current = HostDescription {
+            program: program.clone(),
+            study: self.study.digest.clone(),
+            url: None,
+            admin_code: None,
+        };
         if let Some(text) = read_if_exists(&path)? {
             let text = String::from_utf8_lossy(&text);
             let found: HostDescription =
                 toml::from_str(&text).map_err(|error| invalid(format!("{}: {error}", path.display())))?;
+            (self.url, self.admin_code) = (found.url.clone(), found.admin_code.clone());
+            (current.url, current.admin_code) = (found.url.clone(), found.admin_code.clone());
             if found == current {
                 return Ok(());
             }
@@ -109,8 +128,52 @@ impl HostFolder {
                 return Err(invalid(describe_difference(&found, &current, &path)));
             }
         }
-        let text = toml::to_string(&current).map_err(|error| invalid(error.to_string()))?;
-        write_private(&path, text.as_bytes())
+        write_description(&path, &current)
+    }
+
+    /// Saves the address in links or the code of the experimenter's page. `None` keeps the saved value.
+    ///
+    /// # Errors
+    /// The file cannot be read or written.
+    pub fn save_settings(
+        &mut self,
+        url: Option<String>,
+        admin_code: Option<CodeDigest>,
+    ) -> Result<(), RunError> {
+        let path = self.path.join(HOST_FILE);
+        let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
+        let mut description: HostDescription =
+            toml::from_str(&text).map_err(|error| invalid(format!("{}: {error}", path.display())))?;
+        description.url = url.or(description.url);
+        description.admin_code = admin_code.or(description.admin_code);
+        write_description(&path, &description)?;
+        (self.url, self.admin_code) = (description.url, description.admin_code);
+        Ok(())
+    }
+
+    /// Returns the address of the host in links.
+    pub fn url(&self) -> Option<&str> {
+        self.url.as_deref()
+    }
+
+    /// Returns the digest of the code for the experimenter's page, or `None` if there is no code.
+    pub fn admin_code(&self) -> Option<&CodeDigest> {
+        self.admin_code.as_ref()
+    }
+
+    /// Returns the access of the participants.
+    pub fn access(&self) -> Access {
+        Access::of_folder(&self.path)
+    }
+
+    /// Returns the audit log.
+    pub fn audit(&self) -> AuditLog {
+        AuditLog::of_folder(&self.path)
+    }
+
+    /// Returns the path of the socket if no other path is given.
+    pub fn default_socket(&self) -> PathBuf {
+        self.path.join("host.sock")
     }
 
     /// Returns whether a session has written to its folder of runs.
@@ -147,6 +210,11 @@ impl HostFolder {
         }
         write_private(&copy.join(ASSIGNMENT_FILE), assignment.as_bytes())
     }
+}
+
+fn write_description(path: &Path, description: &HostDescription) -> Result<(), RunError> {
+    let text = toml::to_string(description).map_err(|error| invalid(error.to_string()))?;
+    write_private(path, text.as_bytes())
 }
 
 fn describe_difference(found: &HostDescription, current: &HostDescription, path: &Path) -> String {

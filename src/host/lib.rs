@@ -3,17 +3,28 @@
 //!
 //! All files of a hosted study are in its host folder. Clients receive screens and send keys; they never read a file of
 //! the study.
-
-
 #![cfg(unix)]
 
+mod access;
+mod attach;
 mod attachment;
+mod audit;
 mod folder;
+mod frames;
 mod process;
+mod sandbox;
+mod serve;
 mod session;
 mod sessions;
+mod socket;
 
+pub use access::{Access, Credentials};
+pub use attach::{AttachFailure, attach_terminal};
 pub use attachment::{AttachError, Attachment, ClientKind, CloseReason, Notice, Output, WindowSize};
+pub use audit::{AUDIT_FILE, AuditEvent, AuditLog};
 pub use folder::{HOST_FOLDER, HostFolder, ProgramVersion};
-pub use process::SessionProgram;
+pub use process::{SessionProgram, take_terminal};
+pub use sandbox::{SandboxError, check_sandbox_support, limit_session_resources, restrict_to_session};
+pub use serve::{HostError, HostOptions, serve_host};
 pub use sessions::{ControlError, SessionState, SessionStatus, Sessions};
+pub use socket::HostSocket;

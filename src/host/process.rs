@@ -104,3 +104,12 @@ pub(crate) fn send_signal(process: u32, signal: Signal) {
         let _ = kill_process(process, signal);
     }
 }
+
+/// Makes standard input the controlling terminal of this process, which the host has started. Call it first.
+///
+/// # Errors
+/// Standard input is not a terminal, or the process was not started by a host.
+pub fn take_terminal() -> io::Result<()> {
+    rustix::process::setsid()?;
+    Ok(rustix::process::ioctl_tiocsctty(rustix::stdio::stdin())?)
+}

@@ -11,6 +11,7 @@ use tokio::sync::{Notify, mpsc};
 use tokio::time::timeout;
 
 use crate::attachment::{AttachError, Attachment, ClientKind, ClientQueue, CloseReason, Notice, Output, WindowSize};
+use crate::audit::{AuditEvent, AuditLog};
 use crate::process::{SessionProgram, StartedProcess, Terminal, send_signal};
 
 /// Time after which a session without a client ends its process.
@@ -27,6 +28,7 @@ pub(crate) struct HostedSession {
     /// Folder of the session: study, runs, temporary files.
     folder: PathBuf,
     program: SessionProgram,
+    audit: AuditLog,
     /// Held while the process is started or stopped.
     lifecycle: tokio::sync::Mutex<()>,
     state: Mutex<State>,
@@ -43,6 +45,8 @@ struct State {
     client_changes: u64,
     connected_at: Option<Instant>,
     last_input: Option<Instant>,
+    /// Number of processes that were started.
+    process_number: u64,
 }
 
 impl std::fmt::Debug for State {
@@ -70,7 +74,7 @@ pub(crate) struct Activity {
 }
 
 impl HostedSession {
-    pub fn new(label: String, folder: PathBuf, program: SessionProgram) -> HostedSession {
+    pub fn new(label: String, folder: PathBuf, program: SessionProgram, audit: AuditLog) -> HostedSession {
         let size = WindowSize::default();
         let state = State {
             screen: blank_screen(size),
@@ -80,11 +84,13 @@ impl HostedSession {
             client_changes: 0,
             connected_at: None,
             last_input: None,
+            process_number: 0,
         };
         HostedSession {
             label,
             folder,
             program,
+            audit,
             lifecycle: tokio::sync::Mutex::new(()),
             state: Mutex::new(state),
             process_ended: Notify::new(),
@@ -102,6 +108,8 @@ impl HostedSession {
         if self.lock().process.as_ref().is_some_and(|process| process.closing.is_some()) {
             self.wait_for_end().await;
         }
+        let attached = AuditEvent::Attached { label: self.label.clone(), client: kind.to_string() };
+        self.audit.append(&attached).map_err(|error| AttachError::CannotStart(error.to_string()))?;
         let queue = Arc::new(ClientQueue::new(kind));
         {
             let mut state = self.lock();
@@ -146,6 +154,8 @@ impl HostedSession {
     }
 
     fn adopt_process(self: &Arc<Self>, state: &mut State, started: StartedProcess) {
+        self.record(&AuditEvent::ProcessStarted { label: self.label.clone() });
+        state.process_number += 1;
         let StartedProcess { mut child, terminal } = started;
         let (input, mut inputs) = mpsc::channel::<Vec<u8>>(1024);
         let id = child.id().unwrap_or_default();
@@ -172,6 +182,8 @@ impl HostedSession {
                     status = child.wait() => break status,
                 }
             };
+            let text = status.as_ref().map_or_else(ToString::to_string, ToString::to_string);
+            session.record(&AuditEvent::ProcessEnded { label: session.label.clone(), status: text });
             session.process_ended(status.is_ok_and(|status| status.success()));
         });
     }
@@ -265,6 +277,7 @@ impl HostedSession {
             state.client_changes += 1;
             state.client_changes
         };
+        self.record(&AuditEvent::Detached { label: self.label.clone(), client: queue.kind.to_string() });
         let session = self.clone();
         let Ok(runtime) = tokio::runtime::Handle::try_current() else { return };
         runtime.spawn(async move {
@@ -314,6 +327,17 @@ impl HostedSession {
         let Some(client) = &state.client else { return false };
         client.update(|pending| pending.notices.push_back(notice));
         true
+    }
+
+    pub fn process_number(&self) -> u64 {
+        self.lock().process_number
+    }
+
+    /// Appends an event to the audit log. A session continues if the log cannot be written; attaching does not.
+    fn record(&self, event: &AuditEvent) {
+        if let Err(error) = self.audit.append(event) {
+            eprintln!("novamind host: the audit log was not written: {error}");
+        }
     }
 
     pub fn activity(&self) -> Activity {

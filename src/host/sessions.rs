@@ -10,7 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
 
+use crate::access::Access;
 use crate::attachment::{AttachError, Attachment, ClientKind, CloseReason, Notice, WindowSize};
+use crate::audit::{AuditEvent, AuditLog};
 use crate::folder::{HostFolder, read_if_exists, write_private};
 use crate::process::SessionProgram;
 use crate::session::HostedSession;
@@ -25,6 +27,8 @@ pub struct Sessions(Arc<Shared>);
 #[derive(Debug)]
 struct Shared {
     folder: HostFolder,
+    access: Access,
+    audit: AuditLog,
     sessions: BTreeMap<String, Arc<HostedSession>>,
     states: Mutex<BTreeMap<String, SessionState>>,
     is_shutting_down: AtomicBool,
@@ -98,17 +102,41 @@ impl Sessions {
             Some(bytes) => serde_json::from_slice(&bytes)
                 .map_err(|error| RunError::InvalidRequest(format!("{}: {error}", path.display())))?,
         };
+        let (access, audit) = (folder.access(), folder.audit());
         let session = |label: &str| {
-            Arc::new(HostedSession::new(label.to_owned(), folder.session_folder(label), program.clone()))
+            let path = folder.session_folder(label);
+            Arc::new(HostedSession::new(label.to_owned(), path, program.clone(), audit.clone()))
         };
         let sessions = folder.labels().map(|label| (label.to_owned(), session(label))).collect();
         let (states, is_shutting_down) = (Mutex::new(states), AtomicBool::new(false));
-        Ok(Sessions(Arc::new(Shared { folder, sessions, states, is_shutting_down })))
+        Ok(Sessions(Arc::new(Shared { folder, access, audit, sessions, states, is_shutting_down })))
     }
 
     /// Returns the host folder.
     pub fn folder(&self) -> &HostFolder {
         &self.0.folder
+    }
+
+    /// Returns the access of the participants.
+    pub fn access(&self) -> &Access {
+        &self.0.access
+    }
+
+    /// Returns the label of the participant with this link token, or `None` if no session of the study has it.
+    pub fn label_for_token(&self, token: &str) -> Option<String> {
+        self.0.access.label_for_token(token).filter(|label| self.0.sessions.contains_key(label))
+    }
+
+    /// Returns the audit log.
+    pub fn audit(&self) -> &AuditLog {
+        &self.0.audit
+    }
+
+    /// Appends an event to the audit log. A failure is printed.
+    pub fn record(&self, event: &AuditEvent) {
+        if let Err(error) = self.0.audit.append(event) {
+            eprintln!("novamind host: the audit log was not written: {error}");
+        }
     }
 
     /// Attaches a client to a session. An earlier client of the session is disconnected. Starts the process of the session

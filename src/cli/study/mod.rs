@@ -4,7 +4,8 @@ mod anonymise;
 mod assign;
 mod audit;
 mod check;
-mod code;
+#[cfg_attr(not(all(feature = "server", unix)), allow(unused))]
+pub(super) mod code;
 mod collect;
 mod key;
 mod new;

@@ -1,0 +1,77 @@
+//! `novamind host --study DIR`: serves the sessions of a study.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::open_folder;
+use crate::cli::{Failure, print};
+use crate::host::{HostOptions, SessionProgram, check_sandbox_support, serve_host};
+
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Socket for `novamind host attach` [default: host.sock in the host folder]
+    #[arg(long, value_name = "FILE")]
+    socket: Option<PathBuf>,
+    /// Account that several participants share: they enter label and code
+    #[arg(long, value_name = "NAME")]
+    shared_account: Option<String>,
+    /// Start although this system cannot restrict the processes of sessions
+    #[arg(long)]
+    without_sandbox: bool,
+}
+
+pub fn run(options: &Options, study: Option<&Path>) -> Result<(), Failure> {
+    let study =
+        study.ok_or_else(|| Failure::usage("give the folder of the study: novamind host --study DIR"))?;
+    let folder = open_folder(study)?;
+    // Processes of sessions have another working folder.
+    let socket = options.socket.clone().unwrap_or_else(|| folder.default_socket());
+    let is_sandboxed = check_sandbox(options)?;
+    let program = session_program(is_sandboxed)?;
+    let ready = format!(
+        "serving {} sessions of {}\n\
+         terminal  novamind host attach LABEL --socket {}\n\
+         links     novamind host links {} --csv links.csv\n\
+         ctrl-c saves all sessions and stops the host\n",
+        folder.labels().count(),
+        folder.study().protocol.name,
+        socket.display(),
+        study.display(),
+    );
+    let host = HostOptions {
+        socket,
+        shared_account: options.shared_account.clone(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        is_sandboxed,
+    };
+    let mut printed = Ok(());
+    serve_host(folder, &program, &host, || printed = print(&ready))
+        .map_err(|error| Failure::failed(error.to_string()))?;
+    printed
+}
+
+/// Returns whether the processes of sessions are restricted.
+fn check_sandbox(options: &Options) -> Result<bool, Failure> {
+    const CONSEQUENCE: &str = "Without this restriction, a participant who finds an error in the program can read seeds, keys and \
+                               the data of others, and can use the network";
+    if options.without_sandbox {
+        eprintln!("novamind: the processes of sessions are not restricted. {CONSEQUENCE}");
+        return Ok(false);
+    }
+    let refused =
+        |problem| Failure::failed(format!("{problem}. {CONSEQUENCE}. To start anyway, add --without-sandbox"));
+    check_sandbox_support().map_err(refused)?;
+    Ok(true)
+}
+
+fn session_program(is_sandboxed: bool) -> Result<SessionProgram, Failure> {
+    let program = std::env::current_exe()
+        .map_err(|error| Failure::failed(format!("the path of this program is unknown: {error}")))?;
+    let mut arguments = vec![OsString::from("host"), OsString::from("session")];
+    if !is_sandboxed {
+        arguments.push(OsString::from("--without-sandbox"));
+    }
+    Ok(SessionProgram { program, arguments })
+}

@@ -1,0 +1,167 @@
+//! Restrictions of the process of a session: it can read the system's programs and libraries and its own study, and
+//! write only to its own folders. On Linux, Landlock enforces this for the process and everything that it starts.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use rustix::process::{Resource, Rlimit, setrlimit};
+
+/// Largest number of files that a process of a session may open.
+const MAX_OPEN_FILES: u64 = 512;
+/// Size of the largest file that a process of a session may write, bytes.
+const MAX_FILE_BYTES: u64 = 2 << 30;
+/// Address space of a process of a session, bytes. Most of it is reserved and not used.
+const MAX_ADDRESS_SPACE_BYTES: u64 = 16 << 30;
+
+/// Files and folders of the system that a session may read or execute. Folders with accounts and keys are not among them.
+#[cfg(target_os = "linux")]
+const SYSTEM_READABLE: [&str; 16] = [
+    "/bin",
+    "/sbin",
+    "/lib",
+    "/lib64",
+    "/usr",
+    "/nix/store",
+    "/run/current-system/sw",
+    "/etc/ld.so.cache",
+    "/etc/localtime",
+    "/etc/machine-id",
+    "/var/lib/dbus/machine-id",
+    "/etc/hostname",
+    "/proc/sys/kernel/random/boot_id",
+    "/proc/uptime",
+    "/proc/meminfo",
+    "/proc/cpuinfo",
+];
+/// Devices that a session may read and write. `/dev/tty` is the terminal of the process itself.
+#[cfg(target_os = "linux")]
+const DEVICES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/urandom", "/dev/random", "/dev/tty"];
+
+/// The reason why a process cannot be restricted.
+#[derive(Debug)]
+pub struct SandboxError(String);
+
+impl fmt::Display for SandboxError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for SandboxError {}
+
+/// Sets the limits of the process of a session, and forbids core dumps, which would contain its memory.
+///
+/// # Errors
+/// A limit cannot be set.
+pub fn limit_session_resources() -> Result<(), SandboxError> {
+    let limits = [
+        (Resource::Core, 0),
+        (Resource::Nofile, MAX_OPEN_FILES),
+        (Resource::Fsize, MAX_FILE_BYTES),
+        (Resource::As, MAX_ADDRESS_SPACE_BYTES),
+    ];
+    for (resource, limit) in limits {
+        // A lower limit of the host stays.
+        let limit = rustix::process::getrlimit(resource).maximum.map_or(limit, |maximum| maximum.min(limit));
+        setrlimit(resource, Rlimit { current: Some(limit), maximum: Some(limit) })
+            .map_err(|error| SandboxError(format!("the limit {resource:?} cannot be set: {error}")))?;
+    }
+    Ok(())
+}
+
+/// Restricts this process to the folder of its session. Call it before any thread is started.
+///
+/// # Errors
+/// The system cannot restrict the process.
+#[cfg(target_os = "linux")]
+pub fn restrict_to_session(session: &Path) -> Result<(), SandboxError> {
+    let writable = ["runs", "tmp"].map(|name| session.join(name));
+    let readable = [session.join("study")];
+    let program = std::env::current_exe().ok();
+    linux::restrict(&writable, readable.iter().chain(program.iter()))
+        .map_err(|error| SandboxError(format!("Landlock does not restrict the process: {error}")))
+}
+
+/// Restricts this process to the folder of its session.
+///
+/// # Errors
+/// This system has no Landlock.
+#[cfg(not(target_os = "linux"))]
+pub fn restrict_to_session(_session: &Path) -> Result<(), SandboxError> {
+    Err(SandboxError("only Linux has Landlock".to_owned()))
+}
+
+/// Returns whether the system can restrict the processes of sessions completely.
+///
+/// # Errors
+/// The error states what is missing.
+pub fn check_sandbox_support() -> Result<(), SandboxError> {
+    #[cfg(target_os = "linux")]
+    return linux::check_support().map_err(SandboxError);
+    #[cfg(not(target_os = "linux"))]
+    Err(SandboxError("only Linux has Landlock".to_owned()))
+}
+
+#[cfg(target_os = "linux")]
+mod linux {
+    use super::{DEVICES, Path, PathBuf, SYSTEM_READABLE};
+    use landlock::{
+        ABI, Access, AccessFs, AccessNet, BitFlags, CompatLevel, Compatible, PathBeneath, PathFd, Ruleset,
+        RulesetAttr, RulesetCreated, RulesetCreatedAttr, RulesetError, RulesetStatus, Scope,
+    };
+
+    /// Files, folders and TCP: Linux 6.7. Newer versions also restrict signals and Unix sockets.
+    const REQUIRED: ABI = ABI::V4;
+    const WANTED: ABI = ABI::V9;
+
+    fn ruleset() -> Result<RulesetCreated, RulesetError> {
+        Ruleset::default()
+            .set_compatibility(CompatLevel::HardRequirement)
+            .handle_access(AccessFs::from_all(REQUIRED))?
+            .handle_access(AccessNet::from_all(REQUIRED))?
+            .set_compatibility(CompatLevel::BestEffort)
+            .handle_access(AccessFs::from_all(WANTED))?
+            .scope(Scope::from_all(WANTED))?
+            .create()
+    }
+
+    pub fn check_support() -> Result<(), String> {
+        let explain = |error: RulesetError| {
+            format!("this system cannot restrict programs with Landlock (Linux 6.7 or newer is needed): {error}")
+        };
+        ruleset().map(drop).map_err(explain)
+    }
+
+    pub fn restrict<'a>(
+        writable: &[PathBuf],
+        readable: impl Iterator<Item = &'a PathBuf>,
+    ) -> Result<(), RulesetError> {
+        let mut rules = ruleset()?;
+        let read = AccessFs::from_read(WANTED);
+        for path in SYSTEM_READABLE.iter().map(Path::new).chain(readable.map(PathBuf::as_path)) {
+            rules = allow(rules, path, read)?;
+        }
+        // Files in these folders cannot be executed.
+        let write = AccessFs::from_all(WANTED) & !AccessFs::Execute & !AccessFs::MakeSock & !AccessFs::IoctlDev;
+        for path in writable {
+            rules = allow(rules, path, write)?;
+        }
+        for path in DEVICES.iter().map(Path::new) {
+            rules = allow(rules, path, AccessFs::ReadFile | AccessFs::WriteFile | AccessFs::IoctlDev)?;
+        }
+        let status = rules.restrict_self()?;
+        debug_assert!(status.ruleset != RulesetStatus::NotEnforced);
+        Ok(())
+    }
+
+    /// Allows access to a path. Paths that do not exist on this system are skipped.
+    fn allow(
+        rules: RulesetCreated,
+        path: &Path,
+        access: BitFlags<AccessFs>,
+    ) -> Result<RulesetCreated, RulesetError> {
+        let Ok(opened) = PathFd::new(path) else { return Ok(rules) };
+        let access = if path.is_dir() { access } else { access & AccessFs::from_file(WANTED) };
+        rules.add_rule(PathBeneath::new(opened, access))
+    }
+}

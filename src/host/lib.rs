@@ -28,3 +28,6 @@ pub use sandbox::{SandboxError, check_sandbox_support, limit_session_resources, 
 pub use serve::{HostError, HostOptions, serve_host};
 pub use sessions::{ControlError, SessionState, SessionStatus, Sessions};
 pub use socket::HostSocket;
+
+#[cfg(test)]
+mod tests;

@@ -7,6 +7,7 @@ use std::os::fd::OwnedFd;
 use std::path::PathBuf;
 use std::process::Stdio;
 use std::sync::Arc;
+use std::time::Duration;
 
 use rustix::fs::{Mode, OFlags};
 use rustix::process::{Pid, Signal, kill_process};
@@ -24,6 +25,8 @@ pub struct SessionProgram {
     pub program: PathBuf,
     /// Arguments before the label and the folder of the session.
     pub arguments: Vec<OsString>,
+    /// Time after which a session without a client ends its process.
+    pub absence_limit: Duration,
 }
 
 /// The terminal side of a running session.
@@ -37,6 +40,9 @@ pub(crate) struct StartedProcess {
 }
 
 impl SessionProgram {
+    /// Time after which a session without a client ends its process, for participants who reload a page or change networks.
+    pub const ABSENCE_LIMIT: Duration = Duration::from_secs(20);
+
     /// Starts the process of a session. Its environment contains only the given variables.
     ///
     /// The started program has to make the terminal, its standard input, its controlling terminal. Then the kernel sends

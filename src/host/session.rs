@@ -14,12 +14,11 @@ use crate::attachment::{AttachError, Attachment, ClientKind, ClientQueue, CloseR
 use crate::audit::{AuditEvent, AuditLog};
 use crate::process::{SessionProgram, StartedProcess, Terminal, send_signal};
 
-/// Time after which a session without a client ends its process.
-const ABSENCE_LIMIT: Duration = Duration::from_secs(20);
 /// Time that a process may take to save and end before it is killed.
 const SAVE_TIMEOUT: Duration = Duration::from_secs(15);
-/// Time after a start within which an unexpected end counts as a failure of the start.
-const START_TIME: Duration = Duration::from_secs(5);
+/// Number of restarts after unexpected ends within [`RESTART_PERIOD`]. After more, the client has to connect again.
+const MAX_RESTARTS: usize = 5;
+const RESTART_PERIOD: Duration = Duration::from_secs(60);
 
 /// A session of the host. The process runs only while a participant is connected, and for a short time after that.
 #[derive(Debug)]
@@ -47,6 +46,8 @@ struct State {
     last_input: Option<Instant>,
     /// Number of processes that were started.
     process_number: u64,
+    /// Times of restarts after unexpected ends.
+    restarts: Vec<Instant>,
 }
 
 impl std::fmt::Debug for State {
@@ -59,7 +60,6 @@ struct RunningProcess {
     id: u32,
     terminal: Terminal,
     input: mpsc::Sender<Vec<u8>>,
-    started: Instant,
     /// The reason for which the host is ending the process.
     closing: Option<CloseReason>,
 }
@@ -85,6 +85,7 @@ impl HostedSession {
             connected_at: None,
             last_input: None,
             process_number: 0,
+            restarts: Vec::new(),
         };
         HostedSession {
             label,
@@ -160,7 +161,7 @@ impl HostedSession {
         let (input, mut inputs) = mpsc::channel::<Vec<u8>>(1024);
         let id = child.id().unwrap_or_default();
         state.process =
-            Some(RunningProcess { id, terminal: terminal.clone(), input, started: Instant::now(), closing: None });
+            Some(RunningProcess { id, terminal: terminal.clone(), input, closing: None });
         let writer = terminal.clone();
         tokio::spawn(async move {
             while let Some(bytes) = inputs.recv().await {
@@ -200,8 +201,10 @@ impl HostedSession {
     fn process_ended(self: &Arc<Self>, is_success: bool) {
         let mut state = self.lock();
         let Some(process) = state.process.take() else { return };
-        let restarts = process.closing.is_none() && !is_success && process.started.elapsed() > START_TIME;
-        if restarts && state.client.is_some() {
+        state.restarts.retain(|at| at.elapsed() < RESTART_PERIOD);
+        let has_failed = process.closing.is_none() && !is_success;
+        if has_failed && state.client.is_some() && state.restarts.len() < MAX_RESTARTS {
+            state.restarts.push(Instant::now());
             let size = state.size;
             state.screen = blank_screen(size);
             if let Ok(started) = self.start_process(size) {
@@ -281,7 +284,7 @@ impl HostedSession {
         let session = self.clone();
         let Ok(runtime) = tokio::runtime::Handle::try_current() else { return };
         runtime.spawn(async move {
-            tokio::time::sleep(ABSENCE_LIMIT).await;
+            tokio::time::sleep(session.program.absence_limit).await;
             let _guard = session.lifecycle.lock().await;
             if session.lock().client_changes == changes {
                 session.end_process(CloseReason::Ended).await;

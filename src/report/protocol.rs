@@ -92,6 +92,12 @@ fn participants_section(study: &Study) -> String {
         SeedPlan::Blocks => {
             format!("Each block of participants plays the seeds {} in random order.", listed(&seeds.block))
         }
+        SeedPlan::Secret => format!(
+            "Each block of participants plays {} secret seeds in random order. Commitment to the seeds: {}. After the study, \
+             assignment.csv with the seeds can be published, and this command computes the same commitment from it.",
+            seeds.count.unwrap_or_default(),
+            study.seed_commitment().unwrap_or_default()
+        ),
         SeedPlan::Assigned => "Seeds are assigned by the experimenter.".to_owned(),
     };
     let conditions = match seeds.conditions.as_slice() {
@@ -113,7 +119,7 @@ fn describe_assignment(study: &Study, assignment: &Assignment) -> String {
     let seeds = &study.protocol.seeds;
     let labels: Vec<String> = assignment.rows.iter().map(|place| place.label.clone()).collect();
     let draw = seeds.draw.unwrap_or(1);
-    let is_drawn = Assignment::randomize_in_blocks(&labels, &seeds.block_seeds(), &seeds.conditions, draw)
+    let is_drawn = Assignment::randomize_in_blocks(&labels, &study.block_seeds(), &seeds.conditions, draw)
         == *assignment;
     let blocks = match (seeds.plan, is_drawn) {
         (SeedPlan::One | SeedPlan::Assigned, _) if seeds.conditions.is_empty() => String::new(),

@@ -178,7 +178,7 @@ impl ParticipantSession {
         let assigned_seed = self.assignment.as_ref().and_then(|place| place.seed);
         let seed = match protocol.seeds.plan {
             SeedPlan::One => protocol.seeds.seed,
-            SeedPlan::Blocks | SeedPlan::Assigned => assigned_seed.or(protocol.seeds.seed),
+            SeedPlan::Blocks | SeedPlan::Assigned | SeedPlan::Secret => assigned_seed.or(protocol.seeds.seed),
         };
         let (seed, scenario, days, cash) = match practice {
             true => (Some(protocol.practice.seed), &protocol.practice.scenario, protocol.practice.days, None),

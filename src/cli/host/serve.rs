@@ -29,6 +29,9 @@ pub fn run(options: &Options, study: Option<&Path>) -> Result<(), Failure> {
     // Processes of sessions have another working folder.
     let socket = options.socket.clone().unwrap_or_else(|| folder.default_socket());
     let is_sandboxed = check_sandbox(options)?;
+    if let Some(warning) = folder.study().guessable_seeds_warning() {
+        eprintln!("novamind: note: {warning}");
+    }
     let program = session_program(is_sandboxed)?;
     let ready = format!(
         "serving {} sessions of {}\n\
@@ -73,5 +76,5 @@ fn session_program(is_sandboxed: bool) -> Result<SessionProgram, Failure> {
     if !is_sandboxed {
         arguments.push(OsString::from("--without-sandbox"));
     }
-    Ok(SessionProgram { program, arguments })
+    Ok(SessionProgram { program, arguments, absence_limit: SessionProgram::ABSENCE_LIMIT })
 }

@@ -26,5 +26,18 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if !options.without_sandbox {
         restrict_to_session(&options.folder).map_err(|error| failed(&error))?;
     }
-    crate::cli::play::run_hosted_session(&options.folder, &options.label, false)
+    run_hosted_session(&options.folder, &options.label, false)
+}
+
+/// Plays the session. Replaced when the console has a hosted mode.
+fn run_hosted_session(folder: &std::path::Path, _label: &str, _plain: bool) -> Result<(), Failure> {
+    let context = crate::cli::Context {
+        configuration: crate::record::folder::configuration::Configuration::bundled(),
+        runs: Some(folder.join("runs")),
+        participant: None,
+        has_explicit_runs_folder: true,
+        study_folder: None,
+        is_experimenter: false,
+    };
+    crate::cli::play::guide_participant(&folder.join("study"), &crate::cli::play::Options::default(), &context)
 }

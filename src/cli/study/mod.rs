@@ -4,7 +4,6 @@ mod anonymise;
 mod assign;
 mod audit;
 mod check;
-#[cfg_attr(not(all(feature = "server", unix)), allow(unused))]
 pub(super) mod code;
 mod collect;
 mod key;

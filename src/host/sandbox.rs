@@ -165,3 +165,68 @@ mod linux {
         rules.add_rule(PathBeneath::new(opened, access))
     }
 }
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use std::fs::{read, read_dir, write};
+    use std::net::{TcpListener, TcpStream};
+
+    use super::*;
+
+    /// Runs a check in a restricted thread: Landlock restricts only the thread that calls it and those that it starts.
+    fn in_session(session: &Path, check: impl FnOnce() + Send + 'static) {
+        let session = session.to_owned();
+        let restricted = std::thread::spawn(move || {
+            restrict_to_session(&session).expect("restricted");
+            check();
+        });
+        restricted.join().expect("the checks pass");
+    }
+
+    #[test]
+    fn session_reads_its_study_and_writes_only_its_own_folders() {
+        if check_sandbox_support().is_err() {
+            return;
+        }
+        let host = tempfile::tempdir().expect("a folder");
+        let [own, other] = ["P01", "P02"].map(|label| host.path().join(label));
+        for folder in [&own, &other] {
+            ["study", "runs", "tmp"].map(|name| std::fs::create_dir_all(folder.join(name)).expect("a folder"));
+            write(folder.join("study/study.toml"), "name").expect("written");
+        }
+        write(host.path().join("access.json"), "{}").expect("written");
+        let (host, root) = (host.path().to_owned(), own.clone());
+        in_session(&root, move || {
+            assert!(read(own.join("study/study.toml")).is_ok());
+            assert!(write(own.join("runs/line"), "line").is_ok() && write(own.join("tmp/line"), "line").is_ok());
+            assert!(write(own.join("study/assignment.csv"), "label").is_err());
+            assert!(std::fs::rename(own.join("runs/line"), other.join("runs/line")).is_err());
+            for path in [&other.join("study/study.toml"), &host.join("access.json"), Path::new("/etc/passwd")] {
+                assert!(read(path).is_err(), "{}", path.display());
+            }
+            for path in [&host, &other, &other.join("runs"), Path::new("/etc"), Path::new("/proc"), Path::new("/root")] {
+                assert!(read_dir(path).is_err(), "{}", path.display());
+            }
+            assert!(read("/proc/self/environ").is_err() && read("/proc/1/cmdline").is_err());
+            // A program in a folder that the session can write cannot be started.
+            std::fs::copy("/bin/true", own.join("tmp/true")).expect("copied");
+            assert!(std::process::Command::new(own.join("tmp/true")).status().is_err());
+            assert!(std::process::Command::new("/bin/true").status().is_ok());
+        });
+    }
+
+    #[test]
+    fn session_cannot_use_tcp() {
+        if check_sandbox_support().is_err() {
+            return;
+        }
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = listener.local_addr().expect("an address");
+        assert!(TcpStream::connect(address).is_ok());
+        let session = tempfile::tempdir().expect("a folder");
+        in_session(session.path(), move || {
+            assert!(TcpStream::connect(address).is_err());
+            assert!(TcpListener::bind("127.0.0.1:0").is_err());
+        });
+    }
+}

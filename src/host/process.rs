@@ -67,8 +67,9 @@ impl SessionProgram {
         command.stdin(Stdio::from(terminal.try_clone()?)).stdout(Stdio::from(terminal.try_clone()?));
         command.stderr(Stdio::from(terminal));
         let child = command.spawn()?;
-        let terminal = Terminal(Arc::new(AsyncFd::new(File::from(controller))?));
-        Ok(StartedProcess { child, terminal })
+        #[expect(deprecated, reason = "the alternative is unsafe, and a `File` keeps its descriptor open")]
+        let terminal = AsyncFd::new(File::from(controller))?;
+        Ok(StartedProcess { child, terminal: Terminal(Arc::new(terminal)) })
     }
 }
 

@@ -64,7 +64,7 @@ pub fn serve_host(
     options: &HostOptions,
     when_ready: impl FnOnce(),
 ) -> Result<(), HostError> {
-    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build();
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|error| HostError::Io("threads".to_owned(), error))?;
     runtime.block_on(async {
         let system = |error| HostError::Io("signals".to_owned(), error);

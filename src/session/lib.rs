@@ -37,7 +37,7 @@ pub use database::{
     RunDatabase, query_rejection, rows_to_json, unreadable_record_rejection, with_hidden_table_hint,
 };
 pub use figures::attendance::{
-    Attendance, AttendedWeek, FAST_WEEK_SECONDS, MIN_BREAK_SECONDS, TimeSpan, TimeSpent, TimeUse,
+    Attendance, AttendedWeek, FAST_WEEK_SECONDS, MIN_BREAK_SECONDS, SESSION_BREAK_SECONDS, TimeSpan, TimeSpent, TimeUse,
 };
 pub use figures::changes::{Decisions, SettingChange};
 pub use figures::dashboard::DeliveredQuality;
@@ -86,6 +86,9 @@ pub use playback::position::{Chapter, PlaybackPosition, SeekResult, SeekTarget};
 pub use playback::record_view::RecordView;
 pub use python::PYTHON_DISABLED_MESSAGE;
 pub use recording::RunLog;
+pub use recording::idle_watch::IdleWatch;
+#[cfg(unix)]
+pub use python::confinement::{ScriptRestriction, restrict_scripts};
 pub use recording::activity::{ActivityLog, IDLE_TIMEOUT, Interface, TIME_LIMIT_RATIONALE};
 pub use recording::folders::new_run_id;
 pub use recording::machine::Machine;

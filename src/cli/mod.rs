@@ -47,7 +47,7 @@ use crate::record::folder::manifest_check::read_manifest;
 use crate::record::folder::runs::participant_folder;
 use crate::record::trajectory::Trajectory;
 use crate::session::{LabKey, ModelSettings, SealKey, record_external_read};
-use novamind_study::{STUDY_FILE, Study, load_lab_key, load_seal_key, record_rejected_code};
+use novamind_study::{CodeOutcome, STUDY_FILE, Study, load_lab_key, load_seal_key};
 
 /// Run a simulated AI subscription company for 500 days
 ///
@@ -413,10 +413,9 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.study {
         let is_visit = matches!(arguments.command, None | Some(Command::Play(_)));
         let study = Study::load(folder)?;
-        let has_code = study.protocol.accepts_code(arguments.code.as_deref());
-        if let (false, Some(_)) = (has_code, &arguments.code) {
-            record_rejected_code(&study, &context.runs_folder()?);
-        }
+        let check = |code: &String| Ok::<_, Failure>(study.check_code(&context.runs_folder()?, code));
+        let outcome = arguments.code.as_ref().map(check).transpose()?;
+        let has_code = outcome == Some(CodeOutcome::Right);
         if is_visit && !has_code {
             let options = match arguments.command {
                 Some(Command::Play(options)) => options,
@@ -426,7 +425,10 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         }
         context.is_experimenter = has_code;
         if !has_code {
-            return Err(Failure::usage(match arguments.code {
+            return Err(Failure::usage(match outcome {
+                Some(CodeOutcome::Wait(seconds)) => {
+                    return Err(Failure::usage(CodeOutcome::Wait(seconds).describe()));
+                }
                 Some(_) => {
                     "the code is wrong; this command needs the experimenter's code: give --code, or set NOVAMIND_CODE"
                 }

@@ -40,6 +40,7 @@ use super::context::{EditorDocument, ScreenContext, ScreenId};
 use super::dialogs::Dialog;
 use super::dialogs::next_week::NextWeekDialog;
 use super::effect::Effect;
+use super::hosted::{self, hosted_keys};
 use super::keys::KeyBindings;
 use super::own_commands::{OwnCommands, ProgramCall};
 use super::playback::PlaybackViewer;
@@ -52,7 +53,6 @@ use novamind_record::folder::query_library::QueryLibrary;
 use novamind_report::RunReport;
 use novamind_report::opponents::PlayOpponentsFn;
 use novamind_session::TimeLeft;
-use novamind_study::CodeCheck;
 use novamind_tui::canvas::Click;
 use novamind_tui::chord::Chord;
 use novamind_tui::glyphs::Glyphs;
@@ -207,6 +207,8 @@ pub struct App {
     /// Lines of an own command that are being executed.
     own_lines: own_commands::LineQueue,
     resume_command: String,
+    /// Whether the session runs on a server, for a participant who uses only the screen.
+    pub is_hosted: bool,
     /// The part of the program that the user is in.
     pub stage: Stage,
     /// Dialogs, the topmost last.
@@ -219,8 +221,8 @@ pub struct App {
     typing_log: TypingLog,
     edit_source: EditSource,
     explained_term: Option<String>,
-    /// Check of the experimenter's code, or `None` outside of a study with a code.
-    pub code_check: Option<CodeCheck>,
+    /// Whether the study has an experimenter's code.
+    pub has_code: bool,
     drafts: drafts::DraftState,
     /// The status message in the footer.
     pub status: Option<StatusMessage>,
@@ -257,7 +259,10 @@ impl App {
         let menu = Box::new(StartMenu::new(&settings.configuration));
         let library = QueryLibrary::load(&settings.configuration);
         let column_layouts = Preferences::load(&settings.configuration).tables;
-        let own_commands = OwnCommands::load(&settings.configuration, &settings.keys, &library);
+        let own_commands = match settings.hosted {
+            true => OwnCommands::default(),
+            false => OwnCommands::load(&settings.configuration, &settings.keys, &library),
+        };
         let status = own_commands.problems.first();
         let status = status.map(|problem| StatusMessage { text: problem.clone(), is_error: true });
         App {
@@ -265,7 +270,8 @@ impl App {
             own_commands,
             own_lines: own_commands::LineQueue::default(),
             theme: settings.theme,
-            keys: settings.keys,
+            keys: if settings.hosted { hosted_keys(settings.keys) } else { settings.keys },
+            is_hosted: settings.hosted,
             glyphs: settings.glyphs,
             mouse: true,
             themes: crate::themes::all_themes(&settings.configuration),
@@ -279,7 +285,7 @@ impl App {
             typing_log: TypingLog::default(),
             edit_source: EditSource::Typed,
             explained_term: None,
-            code_check: None,
+            has_code: false,
             drafts: drafts::DraftState::default(),
             status,
             busy: None,
@@ -333,7 +339,11 @@ impl App {
 
     /// Removes and returns all collected orders.
     pub fn take_orders(&mut self) -> Vec<Order> {
-        std::mem::take(&mut self.orders)
+        let mut orders = std::mem::take(&mut self.orders);
+        if self.is_hosted {
+            orders.retain(hosted::is_executed);
+        }
+        orders
     }
 
     /// Removes and returns the orders for the session thread. Other orders stay collected.

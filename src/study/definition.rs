@@ -4,12 +4,10 @@
 //! the first line of every run, so runs of different protocols cannot be mixed up.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use super::assignment::Assignment;
-use super::code::CodeCheck;
 use super::keys::load_seal_key;
 use super::questions::Questionnaire;
 use novamind_record::error::RunError;
@@ -364,12 +362,6 @@ impl Study {
         shorten_digest(&self.digest)
     }
 
-    /// Returns a function that checks the experimenter's code, or `None` if the protocol has no code.
-    pub fn code_check(&self) -> Option<CodeCheck> {
-        let digest = self.protocol.access.code.clone()?;
-        Some(Arc::new(move |code: &str| digest.matches(code)))
-    }
-
     /// Returns the rules that apply in the sessions of the study.
     pub fn session_rules(&self) -> SessionRules {
         let Protocol { session, record, limits, .. } = &self.protocol;
@@ -401,11 +393,6 @@ impl Protocol {
             )
         })
         .collect()
-    }
-
-    /// Returns whether a code grants the experimenter's access. Returns `false` if the protocol has no code.
-    pub fn accepts_code(&self, code: Option<&str>) -> bool {
-        matches!((&self.access.code, code), (Some(digest), Some(code)) if digest.matches(code))
     }
 
     /// Parses the text of `study.toml`. `source` is the name of the file in error messages.

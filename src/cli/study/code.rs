@@ -6,9 +6,7 @@ use crossterm::event::{Event, KeyCode, KeyEventKind, KeyModifiers, read};
 use crossterm::terminal::{disable_raw_mode, enable_raw_mode};
 
 use crate::cli::{Failure, print};
-use novamind_study::CodeDigest;
-
-const MIN_CODE_CHARACTERS: usize = 4;
+use novamind_study::{CodeDigest, MIN_CODE_CHARACTERS};
 
 /// Reads a code and prints the digest of the code. At a terminal, the code is typed twice and not shown.
 pub fn run() -> Result<(), Failure> {

@@ -23,6 +23,8 @@ const LEAVE_SCREEN: &str = "\x1b[?1000l\x1b[?1002l\x1b[?1003l\x1b[?1006l\x1b[?10
 const NOTICE_TIME: Duration = Duration::from_secs(12);
 /// Smallest window of a session: columns and rows.
 const SMALLEST_WINDOW: (u16, u16) = (60, 16);
+/// Largest number of rows of a session.
+const LARGEST_ROWS: u16 = 60;
 
 /// The reason why a terminal is not or no longer attached.
 #[derive(Debug)]
@@ -142,7 +144,7 @@ async fn relay(mut from: OwnedReadHalf, mut to: OwnedWriteHalf) -> Result<String
     }
 }
 
-/// The user's terminal: the session's screen, and above it a message of the host.
+/// The user's terminal: the session's screen, and over it a message of the host.
 #[derive(Debug, Default)]
 struct View {
     notice: Option<(String, Instant)>,
@@ -163,12 +165,13 @@ impl View {
         self.draw_notice()
     }
 
-    /// Draws the message of the host in the first line, without moving the cursor.
+    /// Draws the message of the host in the last line of the session, without moving the cursor.
     fn draw_notice(&self) -> io::Result<()> {
         let Some((text, _)) = &self.notice else { return Ok(()) };
-        let width = usize::from(window_size().0).saturating_sub(2);
+        let (columns, rows) = window_size();
+        let (width, row) = (usize::from(columns).saturating_sub(2), rows.min(LARGEST_ROWS));
         let text: String = text.chars().filter(|letter| !letter.is_control()).take(width).collect();
-        write_out(format!("\x1b7\x1b[1;1H\x1b[0;7m {text:<width$} \x1b[0m\x1b8").as_bytes())
+        write_out(format!("\x1b7\x1b[{row};1H\x1b[0;7m {text:<width$} \x1b[0m\x1b8").as_bytes())
     }
 
     async fn notice_end(&self) {

@@ -64,7 +64,9 @@ impl HostFolder {
     /// The study has no assignment, a file cannot be read or written, or sessions were started by another version of the
     /// program or with another protocol.
     pub fn open_or_create(study: &Path, program: &ProgramVersion) -> Result<HostFolder, RunError> {
-        let study = Study::load(study)?;
+        // Processes of sessions have another working folder, so their paths must be absolute.
+        let path = std::fs::canonicalize(study).map_err(RunError::io(study))?;
+        let study = Study::load(&path)?;
         let assignment = study.assignment.clone().ok_or_else(|| {
             invalid(format!(
                 "hosting needs {ASSIGNMENT_FILE}, which lists the participants. Create it with `novamind study assign {}`",

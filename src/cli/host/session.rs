@@ -1,11 +1,16 @@
 //! `novamind host session`: plays one session in a process that the host has started.
 
-use std::path::PathBuf;
+use std::fs::{File, TryLockError};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use clap::Args;
 
 use crate::cli::Failure;
 use crate::host::{limit_session_resources, restrict_to_session, take_terminal};
+
+/// Time that an earlier process of the session may take to save.
+const MAX_SAVING_TIME: Duration = Duration::from_secs(20);
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -26,11 +31,29 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if !options.without_sandbox {
         restrict_to_session(&options.folder).map_err(|error| failed(&error))?;
     }
+    let _lock = wait_for_earlier_process(&options.folder).map_err(|error| failed(&error))?;
     run_hosted_session(&options.folder, &options.label, false)
 }
 
+/// Waits until an earlier process of the session has ended, which may still be saving after the host was killed. The
+/// returned file has to stay open while the session is played.
+fn wait_for_earlier_process(session: &Path) -> std::io::Result<File> {
+    let lock = File::create(session.join("tmp").join("session.lock"))?;
+    let deadline = Instant::now() + MAX_SAVING_TIME;
+    loop {
+        match lock.try_lock() {
+            Ok(()) => return Ok(lock),
+            Err(TryLockError::Error(error)) => return Err(error),
+            Err(TryLockError::WouldBlock) if Instant::now() > deadline => {
+                return Err(std::io::Error::other("an earlier process of the session is still running"));
+            }
+            Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(50)),
+        }
+    }
+}
+
 /// Plays the session. Replaced when the console has a hosted mode.
-fn run_hosted_session(folder: &std::path::Path, _label: &str, _plain: bool) -> Result<(), Failure> {
+fn run_hosted_session(folder: &Path, _label: &str, _plain: bool) -> Result<(), Failure> {
     let context = crate::cli::Context {
         configuration: crate::record::folder::configuration::Configuration::bundled(),
         runs: Some(folder.join("runs")),

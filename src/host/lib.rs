@@ -17,6 +17,7 @@ mod serve;
 mod session;
 mod sessions;
 mod socket;
+mod web;
 
 pub use access::{Access, Credentials};
 pub use attach::{AttachFailure, attach_terminal};
@@ -28,6 +29,7 @@ pub use sandbox::{SandboxError, check_sandbox_support, limit_session_resources, 
 pub use serve::{HostError, HostOptions, serve_host};
 pub use sessions::{ControlError, SessionState, SessionStatus, Sessions};
 pub use socket::HostSocket;
+pub use web::{PublicAddress, WebOptions, serve_web};
 
 #[cfg(test)]
 mod tests;

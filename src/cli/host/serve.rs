@@ -1,16 +1,23 @@
 //! `novamind host --study DIR`: serves the sessions of a study.
 
 use std::ffi::OsString;
+use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::open_folder;
 use crate::cli::{Failure, print};
-use crate::host::{HostOptions, SessionProgram, check_sandbox_support, serve_host};
+use crate::host::{HostOptions, PublicAddress, SessionProgram, WebOptions, check_sandbox_support, serve_host};
 
 #[derive(Debug, Args)]
 pub struct Options {
+    /// Address on which the host accepts browsers; 0.0.0.0:7420 accepts them from other machines
+    #[arg(long, default_value = "127.0.0.1:7420", value_name = "ADDRESS:PORT")]
+    listen: SocketAddr,
+    /// Address of a reverse proxy whose X-Forwarded-For and X-Forwarded-Proto headers are used; can be repeated
+    #[arg(long = "trust-proxy", value_name = "ADDRESS")]
+    trusted_proxies: Vec<IpAddr>,
     /// Socket for `novamind host attach` [default: host.sock in the host folder]
     #[arg(long, value_name = "FILE")]
     socket: Option<PathBuf>,
@@ -33,24 +40,30 @@ pub fn run(options: &Options, study: Option<&Path>) -> Result<(), Failure> {
         eprintln!("novamind: note: {warning}");
     }
     let program = session_program(is_sandboxed)?;
-    let ready = format!(
-        "serving {} sessions of {}\n\
-         terminal  novamind host attach LABEL --socket {}\n\
-         links     novamind host links {} --csv links.csv\n\
-         ctrl-c saves all sessions and stops the host\n",
-        folder.labels().count(),
-        folder.study().protocol.name,
-        socket.display(),
-        study.display(),
-    );
+    let public = folder.url().map(PublicAddress::parse).transpose().map_err(Failure::failed)?;
+    let (count, name) = (folder.labels().count(), folder.study().protocol.name.clone());
+    let terminals = socket.clone();
+    let ready = |listens_on: SocketAddr| {
+        format!(
+            "serving {count} sessions of {name}\n\
+             browsers  http://{listens_on}; the page for the experimenter is http://{listens_on}/admin\n\
+             terminal  novamind host attach LABEL --socket {}\n\
+             links     novamind host links {} --csv links.csv\n\
+             ctrl-c saves all sessions and stops the host\n",
+            terminals.display(),
+            study.display(),
+        )
+    };
     let host = HostOptions {
+        listen: options.listen,
+        web: WebOptions { public, trusted_proxies: options.trusted_proxies.clone() },
         socket,
         shared_account: options.shared_account.clone(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         is_sandboxed,
     };
     let mut printed = Ok(());
-    serve_host(folder, &program, &host, || printed = print(&ready))
+    serve_host(folder, &program, &host, |listens_on| printed = print(&ready(listens_on)))
         .map_err(|error| Failure::failed(error.to_string()))?;
     printed
 }

@@ -82,12 +82,32 @@ pub fn restrict_to_session(session: &Path) -> Result<(), SandboxError> {
         .map_err(|error| SandboxError(format!("Landlock does not restrict the process: {error}")))
 }
 
+/// Restricts the calling thread, and the processes that it starts, to the programs and libraries of the system and the folder of
+/// a script. Nothing can be written.
+///
+/// # Errors
+/// The system cannot restrict the thread.
+#[cfg(target_os = "linux")]
+pub fn restrict_to_script(folder: &Path) -> Result<(), SandboxError> {
+    linux::restrict(&[], [folder.to_owned()].iter())
+        .map_err(|error| SandboxError(format!("Landlock does not restrict the script: {error}")))
+}
+
 /// Restricts this process to the folder of its session.
 ///
 /// # Errors
 /// This system has no Landlock.
 #[cfg(not(target_os = "linux"))]
 pub fn restrict_to_session(_session: &Path) -> Result<(), SandboxError> {
+    Err(SandboxError("only Linux has Landlock".to_owned()))
+}
+
+/// Restricts the calling thread to the folder of a script.
+///
+/// # Errors
+/// This system has no Landlock.
+#[cfg(not(target_os = "linux"))]
+pub fn restrict_to_script(_folder: &Path) -> Result<(), SandboxError> {
     Err(SandboxError("only Linux has Landlock".to_owned()))
 }
 
@@ -212,6 +232,31 @@ mod tests {
             std::fs::copy("/bin/true", own.join("tmp/true")).expect("copied");
             assert!(std::process::Command::new(own.join("tmp/true")).status().is_err());
             assert!(std::process::Command::new("/bin/true").status().is_ok());
+        });
+    }
+
+    #[test]
+    fn script_reads_no_file_of_its_session() {
+        if check_sandbox_support().is_err() {
+            return;
+        }
+        let session = tempfile::tempdir().expect("a folder");
+        ["study", "runs", "tmp", "tmp/script"]
+            .map(|name| std::fs::create_dir(session.path().join(name)).expect("a folder"));
+        let own = session.path().to_owned();
+        write(own.join("runs/run.toml"), "seed = 7").expect("written");
+        in_session(&session.path().to_owned(), move || {
+            let script = own.join("tmp/script");
+            let (folder, run) = (script.clone(), own.join("runs/run.toml"));
+            let restricted = std::thread::spawn(move || {
+                restrict_to_script(&folder).expect("restricted");
+                assert!(read_dir(&folder).is_ok() && write(folder.join("file"), "text").is_err());
+                assert!(read(&run).is_err() && read_dir(run.parent().expect("a folder")).is_err());
+                let printed = std::process::Command::new("cat").arg(&run).output().expect("cat runs");
+                assert!(!printed.status.success() && printed.stdout.is_empty());
+            });
+            restricted.join().expect("the checks pass");
+            assert!(read(own.join("runs/run.toml")).is_ok(), "the session keeps its access");
         });
     }
 

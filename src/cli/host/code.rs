@@ -5,10 +5,7 @@ use std::path::Path;
 use super::open_folder;
 use crate::cli::study::code::{new_salt, read_new_code};
 use crate::cli::{Failure, print};
-use novamind_study::CodeDigest;
-
-/// Participants can reach the page, so the code must not be guessable.
-const MIN_CODE_CHARACTERS: usize = 8;
+use novamind_study::{CodeDigest, MIN_CODE_CHARACTERS};
 
 pub fn run(study: &Path) -> Result<(), Failure> {
     let mut folder = open_folder(study)?;

@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use crate::cli::Failure;
-use crate::host::{limit_session_resources, restrict_to_session, take_terminal};
+use crate::cli::play::run_hosted_session;
+use crate::host::{limit_session_resources, restrict_to_script, restrict_to_session, take_terminal};
+use crate::session::restrict_scripts;
 
 /// Time that an earlier process of the session may take to save.
 const MAX_SAVING_TIME: Duration = Duration::from_secs(20);
@@ -30,6 +32,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     limit_session_resources().map_err(|error| failed(&error))?;
     if !options.without_sandbox {
         restrict_to_session(&options.folder).map_err(|error| failed(&error))?;
+        restrict_scripts(|folder| restrict_to_script(folder).map_err(std::io::Error::other));
     }
     let _lock = wait_for_earlier_process(&options.folder).map_err(|error| failed(&error))?;
     run_hosted_session(&options.folder, &options.label, false)
@@ -50,17 +53,4 @@ fn wait_for_earlier_process(session: &Path) -> std::io::Result<File> {
             Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(50)),
         }
     }
-}
-
-/// Plays the session. Replaced when the console has a hosted mode.
-fn run_hosted_session(folder: &Path, _label: &str, _plain: bool) -> Result<(), Failure> {
-    let context = crate::cli::Context {
-        configuration: crate::record::folder::configuration::Configuration::bundled(),
-        runs: Some(folder.join("runs")),
-        participant: None,
-        has_explicit_runs_folder: true,
-        study_folder: None,
-        is_experimenter: false,
-    };
-    crate::cli::play::guide_participant(&folder.join("study"), &crate::cli::play::Options::default(), &context)
 }

@@ -53,7 +53,7 @@ echo "nmtest-play:shared-password" | chpasswd
 # The host and its sshd, with the configuration of the documentation.
 mkdir -p /run/sshd "$work/run"
 install -m 755 "$novamind" "$work/novamind"
-"$work/novamind" host --study "$work/pilot" --socket "$work/run/host.sock" --shared-account nmtest-play > "$work/host.log" 2>&1 &
+"$work/novamind" host --study "$work/pilot" --listen 127.0.0.1:22079 --socket "$work/run/host.sock" --shared-account nmtest-play > "$work/host.log" 2>&1 &
 host_process=$!
 ssh-keygen -q -t ed25519 -N '' -f "$work/host_key"
 sed -e "s|^Port .*|Port $port\nListenAddress 127.0.0.1|" -e "s|^HostKey .*|HostKey $work/host_key|" \

@@ -10,13 +10,13 @@ use novamind_study::{CodeDigest, MIN_CODE_CHARACTERS};
 
 /// Reads a code and prints the digest of the code. At a terminal, the code is typed twice and not shown.
 pub fn run() -> Result<(), Failure> {
-    let code = read_new_code(MIN_CODE_CHARACTERS)?;
+    let code = read_new_code()?;
     print(&format!("[access]\ncode = \"{}\"\n", CodeDigest::from_code(&code, &new_salt()).as_str()))
 }
 
-/// Reads a new code of at least `least` characters. At a terminal, the code is typed twice and not shown.
-pub(in crate::cli) fn read_new_code(least: usize) -> Result<String, Failure> {
-    if io::stdin().is_terminal() { read_code_twice(least) } else { read_first_line(least) }
+/// Reads a new code. At a terminal, the code is typed twice and not shown.
+pub(in crate::cli) fn read_new_code() -> Result<String, Failure> {
+    if io::stdin().is_terminal() { read_code_twice() } else { read_first_line() }
 }
 
 /// Returns a text that makes the digests of equal codes different.
@@ -25,24 +25,24 @@ pub(in crate::cli) fn new_salt() -> String {
     format!("{:08x}", (moment.as_nanos() as u64 ^ u64::from(std::process::id()) << 32) as u32)
 }
 
-fn check_length(code: &str, least: usize) -> Result<String, Failure> {
+fn check_length(code: &str) -> Result<String, Failure> {
     let code = code.trim();
     match code.chars().count() {
-        count if count < least => {
-            Err(Failure::usage(format!("a code needs at least {least} characters")))
+        0..MIN_CODE_CHARACTERS => {
+            Err(Failure::usage(format!("a code needs at least {MIN_CODE_CHARACTERS} characters")))
         }
         _ => Ok(code.to_owned()),
     }
 }
 
-fn read_first_line(least: usize) -> Result<String, Failure> {
+fn read_first_line() -> Result<String, Failure> {
     let mut code = String::new();
     io::stdin().lock().read_line(&mut code).map_err(|error| Failure::failed(error.to_string()))?;
-    check_length(&code, least)
+    check_length(&code)
 }
 
-fn read_code_twice(least: usize) -> Result<String, Failure> {
-    let code = check_length(&prompt_hidden("Code (not shown): ")?, least)?;
+fn read_code_twice() -> Result<String, Failure> {
+    let code = check_length(&prompt_hidden("Code (not shown): ")?)?;
     if prompt_hidden("Repeat: ")?.trim() != code {
         return Err(Failure::usage("the two codes differ; nothing was saved"));
     }

@@ -221,10 +221,10 @@ mod tests {
             assert!(write(own.join("runs/line"), "line").is_ok() && write(own.join("tmp/line"), "line").is_ok());
             assert!(write(own.join("study/assignment.csv"), "label").is_err());
             assert!(std::fs::rename(own.join("runs/line"), other.join("runs/line")).is_err());
-            for path in [&other.join("study/study.toml"), &host.join("access.json"), Path::new("/etc/passwd")] {
+            for path in [Path::new("/etc/passwd"), &other.join("study/study.toml"), &host.join("access.json")] {
                 assert!(read(path).is_err(), "{}", path.display());
             }
-            for path in [&host, &other, &other.join("runs"), Path::new("/etc"), Path::new("/proc"), Path::new("/root")] {
+            for path in [Path::new("/etc"), Path::new("/proc"), Path::new("/root"), &host, &other, &other.join("runs")] {
                 assert!(read_dir(path).is_err(), "{}", path.display());
             }
             assert!(read("/proc/self/environ").is_err() && read("/proc/1/cmdline").is_err());

@@ -164,7 +164,13 @@ pub fn run_hosted_session(folder: &Path, label: &str, plain: bool) -> Result<(),
     if plain {
         let style = crate::plain::OutputStyle::default();
         let entrance = Entrance::Hosted(label);
-        return exit_with(crate::plain::run_participant_session(study, &runs, &configuration, style, entrance)?);
+        return exit_with(crate::plain::run_participant_session(
+            study,
+            &runs,
+            &configuration,
+            style,
+            entrance,
+        )?);
     }
     let settings = Settings {
         theme: themes::find_theme("dark", &configuration).map_err(Failure::usage)?,

@@ -327,10 +327,14 @@ mod tests {
     #[test]
     fn every_action_is_in_exactly_one_list() {
         for entry in ACTIONS {
-            let lists = [AVAILABLE, NOT_AVAILABLE_ACTIONS].map(|list| {
-                list.iter().filter(|action| **action == entry.action).count()
-            });
-            assert_eq!(lists.iter().sum::<usize>(), 1, "{:?}: add it to one of the lists: {lists:?}", entry.action);
+            let lists = [AVAILABLE, NOT_AVAILABLE_ACTIONS]
+                .map(|list| list.iter().filter(|action| **action == entry.action).count());
+            assert_eq!(
+                lists.iter().sum::<usize>(),
+                1,
+                "{:?}: add it to one of the lists: {lists:?}",
+                entry.action
+            );
         }
     }
 

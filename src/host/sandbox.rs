@@ -260,6 +260,64 @@ mod tests {
         });
     }
 
+    /// Python code that lists what it can access of the paths in its arguments, its parent and the network.
+    const PROBE: &str = r#"
+import os, socket, sys
+def attempt(name, work):
+    try:
+        work()
+    except OSError:
+        return
+    print(name)
+for path in sys.argv[2:]:
+    attempt(path, lambda: open(path, "rb").read(1))
+    attempt(path, lambda: os.listdir(path))
+parent = os.getppid()
+for name in ("environ", "mem", "maps", "cmdline", "status"):
+    attempt("parent " + name, lambda: open(f"/proc/{parent}/{name}", "rb").read(1))
+attempt("parent fd", lambda: os.listdir(f"/proc/{parent}/fd"))
+attempt("signal", lambda: os.kill(parent, 0))
+attempt("tcp", lambda: socket.create_connection(("127.0.0.1", int(sys.argv[1])), 2))
+print("end")
+"#;
+
+    #[test]
+    fn script_reaches_neither_the_session_nor_its_parent_nor_the_network() {
+        let python = Path::new("/usr/bin/python3");
+        if check_sandbox_support().is_err() || !python.exists() {
+            return;
+        }
+        let host = tempfile::tempdir().expect("a folder");
+        let [own, other] = ["P01", "P02"].map(|label| host.path().join(label));
+        let mut paths = vec![host.path().to_owned(), own.join("study"), own.join("runs"), own.join("tmp")];
+        for session in [&own, &other] {
+            ["study", "runs", "tmp/script"]
+                .map(|name| std::fs::create_dir_all(session.join(name)).expect("a folder"));
+            for file in ["run.toml", "trajectory.jsonl"] {
+                write(session.join("runs").join(file), "seed").expect("written");
+                paths.push(session.join("runs").join(file));
+            }
+        }
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let port = listener.local_addr().expect("an address").port().to_string();
+        let script = own.join("tmp/script");
+        // The parent is restricted to the session, as the process of a session is.
+        in_session(&own, move || {
+            let start = || {
+                restrict_to_script(&script).expect("restricted");
+                let mut command = std::process::Command::new(python);
+                command.args(["-I", "-c", PROBE, &port]).args(&paths).current_dir(&script);
+                command.output().expect("python starts")
+            };
+            let output = std::thread::scope(|scope| scope.spawn(start).join().expect("no panic"));
+            let texts =
+                [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+            assert_eq!(texts, ["end\n".to_owned(), String::new()]);
+            // The restriction ends with the thread: the session still reads its own run.
+            assert!(read(script.join("../../runs/run.toml")).is_ok());
+        });
+    }
+
     #[test]
     fn session_cannot_use_tcp() {
         if check_sandbox_support().is_err() {

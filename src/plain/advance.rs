@@ -227,7 +227,10 @@ fn end_response(command: &str, session: &Session, week: &WeekResult) -> CommandR
 ///
 /// # Errors
 /// The input cannot be read, or the prompt cannot be written.
-pub fn ask_next_week_input(session: &mut Session, input: &mut LineSource) -> io::Result<Option<NextWeekInput>> {
+pub fn ask_next_week_input(
+    session: &mut Session,
+    input: &mut LineSource,
+) -> io::Result<Option<NextWeekInput>> {
     let seen = session.company().observe();
     let changes = seen.changes.iter().map(super::commands::describe_setting_change);
     let mut lines: Vec<String> = changes.chain(seen.purchases.iter().cloned()).collect();

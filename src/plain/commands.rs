@@ -360,20 +360,24 @@ impl Interpreter {
     fn next_week(&mut self, arguments: &[Argument], input: &mut LineSource) -> io::Result<CommandResponse> {
         let day = self.session.day();
         let filing = match advance::parse_next_week_input(arguments, &self.session, self.is_interactive) {
-            Ok(advance::NextWeekInput::Ask) => match advance::ask_next_week_input(&mut self.session, input)? {
-                Some(filing) => filing,
-                None => {
-                    let text = "cancelled; no day has passed".to_owned();
-                    return Ok(CommandResponse::success("next", text, json!({ "cancelled": true })));
+            Ok(advance::NextWeekInput::Ask) => {
+                match advance::ask_next_week_input(&mut self.session, input)? {
+                    Some(filing) => filing,
+                    None => {
+                        let text = "cancelled; no day has passed".to_owned();
+                        return Ok(CommandResponse::success("next", text, json!({ "cancelled": true })));
+                    }
                 }
-            },
+            }
             Ok(filing) => filing,
             Err(problem) => return Ok(syntax_error(problem)),
         };
         // The time for the week may have ended while the player was typing.
         let limits = self.check_limits();
         match limits.into_iter().reduce(CommandResponse::followed_by) {
-            Some(response) if self.session.day() != day || self.session.log().is_clock_stopped() => Ok(response),
+            Some(response) if self.session.day() != day || self.session.log().is_clock_stopped() => {
+                Ok(response)
+            }
             Some(response) => Ok(response.followed_by(self.advance(filing))),
             None => Ok(self.advance(filing)),
         }
@@ -395,7 +399,9 @@ impl Interpreter {
     fn reject_if_hosted(&self, line: &ParsedLine) -> Option<CommandResponse> {
         let word = match line {
             ParsedLine::Empty => return None,
-            ParsedLine::TextCommand { word, .. } | ParsedLine::Call { word, .. } => grammar::current_name(word),
+            ParsedLine::TextCommand { word, .. } | ParsedLine::Call { word, .. } => {
+                grammar::current_name(word)
+            }
         };
         let is_command = COMMANDS.iter().any(|(name, _)| *name == word);
         (self.is_hosted && is_command && !is_hosted_command(word)).then(|| {
@@ -633,8 +639,8 @@ mod tests {
     /// Commands that are not available in hosted sessions: they create or open other runs, show hidden state, belong
     /// to lessons or debug runs, or simulate the run again.
     const CLOSED_COMMANDS: &[&str] = &[
-        "why", "whatif", "branch", "branches", "step", "xray", "lens", "break", "run", "since", "find", "who", "diff",
-        "lesson", "guess", "hint", "debrief", "retry", "set",
+        "why", "whatif", "branch", "branches", "step", "xray", "lens", "break", "run", "since", "find",
+        "who", "diff", "lesson", "guess", "hint", "debrief", "retry", "set",
     ];
 
     #[test]

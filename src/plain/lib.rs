@@ -77,10 +77,12 @@ fn run_dialogue(
     let study = participant.map(|participant| participant.study);
     session.activity().attach(Interface { name: "plain", window: None });
     let mut interpreter = Interpreter::new(session, library, lines.signal_watch(), io::stdin().is_terminal());
-    interpreter.code_check = participant.and_then(|participant| participant.study.code_check(participant.runs));
+    interpreter.code_check =
+        participant.and_then(|participant| participant.study.code_check(participant.runs));
     interpreter.is_participant = study.is_some();
     interpreter.is_hosted = participant.is_some_and(|participant| participant.is_hosted);
-    interpreter.has_final_questions = study.is_some_and(|study| study.has_final_questions(&interpreter.session));
+    interpreter.has_final_questions =
+        study.is_some_and(|study| study.has_final_questions(&interpreter.session));
     let mut out = io::stdout();
     let end = command_loop(&mut interpreter, lines, &mut out, style, study);
     // An output error means that the terminal was closed or that the reader of the output has ended.

@@ -45,7 +45,14 @@ impl LineSource {
                 }
             }
         });
-        LineSource { requests: wanted, events, watch, is_requested: false, idle: IdleWatch::default(), number: 1 }
+        LineSource {
+            requests: wanted,
+            events,
+            watch,
+            is_requested: false,
+            idle: IdleWatch::default(),
+            number: 1,
+        }
     }
 
     /// Returns the signal watch of the session.

@@ -86,7 +86,8 @@ pub fn run_participant_session(
     entrance: Entrance<'_>,
 ) -> Result<u8, RunError> {
     let lines = LineSource::from_stdin();
-    let mut host = SessionHost { lines, configuration, style, consent: None, entrance, runs: runs.to_owned() };
+    let mut host =
+        SessionHost { lines, configuration, style, consent: None, entrance, runs: runs.to_owned() };
     match host.run_steps(study, runs) {
         Ok(code) | Err(SessionStop::Left(code)) => Ok(code),
         Err(SessionStop::Run(error)) => Err(error),
@@ -308,8 +309,7 @@ impl SessionHost<'_> {
         let library = QueryLibrary::load(self.configuration);
         let participant =
             Participant { study: visit.study(), runs: &self.runs, is_hosted: self.entrance.is_hosted() };
-        let (end, session) =
-            run_dialogue(session, library, self.style, Some(participant), &mut self.lines)?;
+        let (end, session) = run_dialogue(session, library, self.style, Some(participant), &mut self.lines)?;
         let is_finished = session.ended().is_some() && visit.study().due_questions(&session).is_empty();
         // Close the run, because an open run cannot be erased.
         drop(session);

@@ -36,7 +36,8 @@ impl Interpreter {
         if outcome != CodeOutcome::Right {
             let text = match outcome {
                 CodeOutcome::Wait(_) => outcome.describe(),
-                _ => "the time limit is reached. To restart the clock, the experimenter types: resume CODE".to_owned(),
+                _ => "the time limit is reached. To restart the clock, the experimenter types: resume CODE"
+                    .to_owned(),
             };
             return CommandResponse::rejected("resume", Rejection::new("code_needed", text));
         }
@@ -52,7 +53,9 @@ impl Interpreter {
     /// Checks the experimenter's code if a time limit has stopped the clock. An empty code is not an attempt.
     fn check_limit_code(&self, code: &str) -> CodeOutcome {
         match &self.code_check {
-            Some(_) if self.session.log().is_stopped_by_limit() && code.trim().is_empty() => CodeOutcome::Wrong,
+            Some(_) if self.session.log().is_stopped_by_limit() && code.trim().is_empty() => {
+                CodeOutcome::Wrong
+            }
             Some(check) if self.session.log().is_stopped_by_limit() => check(code),
             _ => CodeOutcome::Right,
         }

@@ -70,7 +70,10 @@ impl CommandResponse {
     /// success replaces the first response.
     pub fn followed_by(self, next: CommandResponse) -> CommandResponse {
         match (self, next) {
-            (CommandResponse::Success { text: first, .. }, CommandResponse::Success { command, text, data }) => {
+            (
+                CommandResponse::Success { text: first, .. },
+                CommandResponse::Success { command, text, data },
+            ) => {
                 let text = format!("{}\n{text}", first.trim_end());
                 CommandResponse::Success { command, text, data }
             }

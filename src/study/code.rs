@@ -13,7 +13,7 @@ use novamind_record::clock::{now, parse_seconds};
 pub const MIN_CODE_CHARACTERS: usize = 8;
 
 /// Wrong codes without a delay.
-const FREE_ATTEMPTS: u32 = 3;
+const FREE_ATTEMPTS: u32 = 5;
 /// Longest delay, in seconds.
 const MAX_DELAY_SECONDS: f64 = 600.0;
 /// Time after which a wrong code no longer counts, in seconds.
@@ -73,7 +73,8 @@ impl Study {
     /// Returns the times of wrong codes, in seconds since the Unix epoch.
     fn rejected_code_times(&self, runs: &Path) -> Vec<f64> {
         let lines = read_visits(&runs.join(VISITS_FILE)).into_iter();
-        let rejected = lines.filter(|line| line.study == self.digest && line.event == VisitEvent::CodeRefused);
+        let rejected =
+            lines.filter(|line| line.study == self.digest && line.event == VisitEvent::CodeRefused);
         rejected.map(|line| parse_seconds(&line.at)).collect()
     }
 }
@@ -95,14 +96,14 @@ mod tests {
     #[test]
     fn delay_doubles_with_each_wrong_code_and_ends_after_an_hour() {
         assert_eq!(delay_seconds(&[], 100.0), 0);
-        assert_eq!(delay_seconds(&[98.0, 99.0], 100.0), 0);
-        assert_eq!(delay_seconds(&[97.0, 98.0, 100.0], 100.0), 1);
-        assert_eq!(delay_seconds(&[96.0, 97.0, 98.0, 100.0], 100.0), 2);
-        assert_eq!(delay_seconds(&[100.0; 8], 100.0), 32);
-        assert_eq!(delay_seconds(&[100.0; 8], 132.0), 0, "the delay is over");
+        assert_eq!(delay_seconds(&[99.0; 4], 100.0), 0);
+        assert_eq!(delay_seconds(&[97.0, 97.0, 97.0, 98.0, 100.0], 100.0), 1);
+        assert_eq!(delay_seconds(&[96.0, 97.0, 97.0, 97.0, 98.0, 100.0], 100.0), 2);
+        assert_eq!(delay_seconds(&[100.0; 10], 100.0), 32);
+        assert_eq!(delay_seconds(&[100.0; 10], 132.0), 0, "the delay is over");
         assert_eq!(delay_seconds(&[100.0; 40], 100.0), 600);
         assert_eq!(delay_seconds(&[100.0; 40], 3700.0), 0);
         // Setting the clock back does not remove the delay.
-        assert_eq!(delay_seconds(&[5000.0; 8], 100.0), 32);
+        assert_eq!(delay_seconds(&[5000.0; 10], 100.0), 32);
     }
 }

@@ -84,9 +84,10 @@ impl StudyPage {
                     text(&format!("To erase what you did in this study, type {WITHDRAW} instead.")),
                 ],
             ),
-            StudyPageKind::Label(_, true) => {
-                ("Withdraw", vec![strong("Type the label whose runs of this study are to be erased.".to_owned())])
-            }
+            StudyPageKind::Label(_, true) => (
+                "Withdraw",
+                vec![strong("Type the label whose runs of this study are to be erased.".to_owned())],
+            ),
             StudyPageKind::Code(_) => ("Experimenter", vec![strong("The experimenter's code:".to_owned())]),
             StudyPageKind::Loading | StudyPageKind::Consent(_) => ("", vec![text("Loading …")]),
             StudyPageKind::Practice { resumed, may_pass } => {
@@ -162,10 +163,9 @@ impl StudyPage {
                 "Withdraw",
                 vec![strong(format!("Type {WITHDRAW} to erase everything you did in this study."))],
             ),
-            StudyPageKind::Declined => (
-                "Not agreed",
-                vec![text(DECLINED_NOTICE), text(experimenter), next_person],
-            ),
+            StudyPageKind::Declined => {
+                ("Not agreed", vec![text(DECLINED_NOTICE), text(experimenter), next_person])
+            }
             StudyPageKind::Withdrawn(kept) => (
                 "Withdrawn",
                 vec![

@@ -44,7 +44,9 @@ impl StudyState {
             label,
             has_limits: {
                 let limits = &study.protocol.limits;
-                [limits.week_minutes, limits.session_minutes, limits.study_minutes].iter().any(Option::is_some)
+                [limits.week_minutes, limits.session_minutes, limits.study_minutes]
+                    .iter()
+                    .any(Option::is_some)
             },
             has_practice_tour: study.protocol.session.tour,
             due_questions: Vec::new(),
@@ -102,7 +104,14 @@ const WITHDRAW: &str = "withdraw";
 
 impl StudyPage {
     fn new(title: &str, kind: StudyPageKind) -> StudyPage {
-        StudyPage { title: title.to_owned(), kind, problem: None, rejected_labels: 0, is_hosted: false, has_limits: false }
+        StudyPage {
+            title: title.to_owned(),
+            kind,
+            problem: None,
+            rejected_labels: 0,
+            is_hosted: false,
+            has_limits: false,
+        }
     }
 
     /// Returns the page with the properties of the study and of the session.
@@ -169,7 +178,8 @@ impl StudyPage {
         }
         self.rejected_labels += 1;
         let field = TextField::default();
-        (self.kind, self.problem) = (StudyPageKind::Label(field, self.withdraws_after_label()), Some(problem));
+        (self.kind, self.problem) =
+            (StudyPageKind::Label(field, self.withdraws_after_label()), Some(problem));
     }
 
     /// Returns whether the participant chose to withdraw before entering the label.

@@ -5,8 +5,8 @@ use serde_json::json;
 use super::super::grammar::{Argument, ParseError, current_name};
 use super::super::response::CommandResponse;
 use super::{
-    COMMANDS, NEXT_WEEK_COMMANDS, argument_error, explanations, find_tool, inbox, is_hosted_command, overview,
-    parameters, rules, xray,
+    COMMANDS, NEXT_WEEK_COMMANDS, argument_error, explanations, find_tool, inbox, is_hosted_command,
+    overview, parameters, rules, xray,
 };
 use novamind_base::similar_names;
 use novamind_tools::{ParameterNumbers, ToolKind};
@@ -196,12 +196,14 @@ mod tests {
     #[test]
     fn commands_are_explained_with_an_example() {
         for name in ["inbox", "thread", "needs", "fit", "leads", "curve", "check", "pause", "rules", "next"] {
-            let help_text =
-                help(Some(name), &[], &ParameterNumbers::bundled(), Audience::default()).expect("help").to_text();
+            let help_text = help(Some(name), &[], &ParameterNumbers::bundled(), Audience::default())
+                .expect("help")
+                .to_text();
             assert!(help_text.lines().count() > 1, "{name}: {help_text}");
         }
-        let help_text =
-            help(Some("needs"), &[], &ParameterNumbers::bundled(), Audience::default()).expect("help").to_text();
+        let help_text = help(Some("needs"), &[], &ParameterNumbers::bundled(), Audience::default())
+            .expect("help")
+            .to_text();
         assert!(help_text.contains("Urgent problems come first"), "{help_text}");
     }
 

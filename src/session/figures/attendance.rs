@@ -328,8 +328,7 @@ impl Attendance {
     /// Returns the milliseconds that count for a limit up to `moment`, in nanoseconds since the Unix epoch.
     pub fn limit_ms_until(&self, scope: LimitScope, moment: i64) -> u64 {
         let passed = (moment - self.last_time_ns.unwrap_or(moment)).max(0);
-        let counted =
-            if self.counts_for_limits(self.classify_gap(passed, None)) { passed } else { 0 };
+        let counted = if self.counts_for_limits(self.classify_gap(passed, None)) { passed } else { 0 };
         ((self.limit_time.in_scope(scope) + counted) / NS_PER_MS).max(0) as u64
     }
 
@@ -650,7 +649,9 @@ mod tests {
         let closed = presence_record(PresenceEvent::Closed);
         // With and without a `closed` line: the program was closed, or killed while the user was reading.
         let leavings = [vec![(50, closed)], vec![]];
-        for (leaving, interface) in leavings.into_iter().flat_map(|one| ["console", "plain"].map(|name| (one.clone(), name))) {
+        for (leaving, interface) in
+            leavings.into_iter().flat_map(|one| ["console", "plain"].map(|name| (one.clone(), name)))
+        {
             let mut lines = vec![(0, opened_record(interface)), (50, view_record())];
             lines.extend(leaving);
             lines.push((1000, opened_record(interface)));
@@ -686,23 +687,25 @@ mod tests {
 
     #[test]
     fn only_stopped_clock_questions_and_simulation_stop_limits() {
-        let question = Record::Activity(Activity::Question(novamind_record::trajectory::record::QuestionShown {
-            questionnaire: String::new(),
-            occasion: String::new(),
-            id: String::new(),
-            text: String::new(),
-            form: String::new(),
-            options: Vec::new(),
-        }));
-        let answer = Record::Activity(Activity::Answer(novamind_record::trajectory::record::QuestionAnswer {
-            questionnaire: String::new(),
-            occasion: String::new(),
-            id: String::new(),
-            value: serde_json::Value::Null,
-            for_ms: 0,
-            changes: 0,
-            as_expected: None,
-        }));
+        let question =
+            Record::Activity(Activity::Question(novamind_record::trajectory::record::QuestionShown {
+                questionnaire: String::new(),
+                occasion: String::new(),
+                id: String::new(),
+                text: String::new(),
+                form: String::new(),
+                options: Vec::new(),
+            }));
+        let answer =
+            Record::Activity(Activity::Answer(novamind_record::trajectory::record::QuestionAnswer {
+                questionnaire: String::new(),
+                occasion: String::new(),
+                id: String::new(),
+                value: serde_json::Value::Null,
+                for_ms: 0,
+                changes: 0,
+                as_expected: None,
+            }));
         let run = attendance_from_records(&[
             (0, opened_record("console")),
             (10, clock_record(ClockEvent::Stopped)),
@@ -716,7 +719,11 @@ mod tests {
             (705, view_record()),
         ]);
         assert_eq!(limit_seconds(&run, 705), [25; 3]);
-        let next = attendance_from_records(&[(0, opened_record("console")), (60, view_record()), (90, week_record())]);
+        let next = attendance_from_records(&[
+            (0, opened_record("console")),
+            (60, view_record()),
+            (90, week_record()),
+        ]);
         assert_eq!(limit_seconds(&next, 95), [5, 65, 65]);
     }
 

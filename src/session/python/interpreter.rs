@@ -36,7 +36,11 @@ pub(super) enum Interpreter {
 impl Interpreter {
     /// Returns the interpreter for a mode. Runs of studies are baseline runs. Restricted scripts never search `PATH`.
     pub fn for_mode(mode: Mode) -> Interpreter {
-        if mode == Mode::Baseline || confinement::is_restricted() { Interpreter::System } else { Interpreter::FromPath }
+        if mode == Mode::Baseline || confinement::is_restricted() {
+            Interpreter::System
+        } else {
+            Interpreter::FromPath
+        }
     }
 
     /// Returns the program to start and the `PATH` for its process. `path` is the `PATH` of the current process.

@@ -81,15 +81,7 @@ impl ScriptProcess {
             }
         };
         let given = json!({ "code": code, "seconds": time.as_secs_f64(), "memory": MAX_MEMORY_BYTES });
-        Ok(ScriptProcess {
-            process,
-            channel,
-            stdout,
-            stderr,
-            deadline,
-            setup_message: given,
-            folder,
-        })
+        Ok(ScriptProcess { process, channel, stdout, stderr, deadline, setup_message: given, folder })
     }
 
     /// Replaces the path of the script's folder in a text. In a hosted session, the path is a path of the server.

@@ -62,12 +62,10 @@ fn script_result(
     time: Duration,
 ) -> Result<RawScriptOutput, Rejection> {
     match end {
-        ScriptEnd::Ended(status) if status.success() => {
-            Ok(RawScriptOutput {
-                results: process.without_folder(process.stdout.first_text()),
-                remarks: process.without_folder(process.stderr.first_text()),
-            })
-        }
+        ScriptEnd::Ended(status) if status.success() => Ok(RawScriptOutput {
+            results: process.without_folder(process.stdout.first_text()),
+            remarks: process.without_folder(process.stderr.first_text()),
+        }),
         ScriptEnd::Ended(status) => {
             let how = match (status.code(), status.signal()) {
                 (Some(code), _) => format!("python3 ended with code {code}"),
@@ -102,7 +100,10 @@ fn script_result(
 }
 
 fn printed_output_paragraph(process: &ScriptProcess) -> String {
-    paragraph("output of the script:\n", &process.without_folder(process.stdout.last_text(MAX_PRINTED_CHARACTERS)))
+    paragraph(
+        "output of the script:\n",
+        &process.without_folder(process.stdout.last_text(MAX_PRINTED_CHARACTERS)),
+    )
 }
 
 /// Returns a paragraph of a message, or an empty string if `text` is empty.

@@ -193,6 +193,12 @@ mod tests {
 
     use super::*;
 
+    fn create_folders(session: &Path) {
+        for name in ["study", "runs", "tmp/script"] {
+            std::fs::create_dir_all(session.join(name)).expect("a folder");
+        }
+    }
+
     /// Runs a check in a restricted thread: Landlock restricts only the thread that calls it and those that it starts.
     fn in_session(session: &Path, check: impl FnOnce() + Send + 'static) {
         let session = session.to_owned();
@@ -211,7 +217,7 @@ mod tests {
         let host = tempfile::tempdir().expect("a folder");
         let [own, other] = ["P01", "P02"].map(|label| host.path().join(label));
         for folder in [&own, &other] {
-            ["study", "runs", "tmp"].map(|name| std::fs::create_dir_all(folder.join(name)).expect("a folder"));
+            create_folders(folder);
             write(folder.join("study/study.toml"), "name").expect("written");
         }
         write(host.path().join("access.json"), "{}").expect("written");
@@ -241,8 +247,7 @@ mod tests {
             return;
         }
         let session = tempfile::tempdir().expect("a folder");
-        ["study", "runs", "tmp", "tmp/script"]
-            .map(|name| std::fs::create_dir(session.path().join(name)).expect("a folder"));
+        create_folders(session.path());
         let own = session.path().to_owned();
         write(own.join("runs/run.toml"), "seed = 7").expect("written");
         in_session(&session.path().to_owned(), move || {

@@ -7,6 +7,8 @@
 (() => {
   /** Characters of the smallest and the largest window, as in src/host/attachment.rs. */
   const LIMITS = { columns: [60, 200], rows: [16, 60] };
+  /** A larger font may fill a window that is too large, but leaves at least this number of characters. */
+  const COMFORTABLE = { columns: [120], rows: [40] };
   const FONT_SIZE = 15;
   /** The host sends a message at least every 2 s. After this time without one, the connection is considered lost. */
   const SILENCE_MS = 6000;
@@ -32,13 +34,34 @@
   const terminal = new Terminal({
     allowProposedApi: true,
     cursorBlink: false,
+    drawBoldTextInBrightColors: false,
     fontFamily:
       '"DejaVu Sans Mono", "Cascadia Mono", Menlo, Consolas, "Liberation Mono", "Noto Sans Mono", "Apple Braille", "Segoe UI Symbol", "Noto Sans Symbols 2", monospace',
     fontSize: FONT_SIZE,
     macOptionClickForcesSelection: true,
     rescaleOverlappingGlyphs: true,
     scrollback: 0,
-    theme: { background: "#101216", foreground: "#d8dae0" },
+    // Colors that a theme of the program names instead of defining them.
+    theme: {
+      background: "#101216",
+      foreground: "#d8dae0",
+      black: "#1b1e25",
+      red: "#f2716b",
+      green: "#6cc37a",
+      yellow: "#d9a441",
+      blue: "#6ea8fe",
+      magenta: "#c792ea",
+      cyan: "#3fc1c9",
+      white: "#d8dae0",
+      brightBlack: "#8a92a3",
+      brightRed: "#ff938c",
+      brightGreen: "#8fe09b",
+      brightYellow: "#f5c866",
+      brightBlue: "#93c0ff",
+      brightMagenta: "#dcb4f7",
+      brightCyan: "#6ee3ea",
+      brightWhite: "#ffffff",
+    },
   });
   const fit = new FitAddon.FitAddon();
   terminal.loadAddon(fit);
@@ -226,15 +249,17 @@
     terminal.options.fontSize = FONT_SIZE;
     let size = fit.proposeDimensions();
     if (!size || !size.cols || !size.rows) return;
-    const enlarge = Math.min(size.cols / LIMITS.columns[1], size.rows / LIMITS.rows[1]);
-    const shrink = Math.min(size.cols / LIMITS.columns[0], size.rows / LIMITS.rows[0]);
+    const ratio = (limits, index) => [size.cols / limits.columns[index], size.rows / limits.rows[index]];
+    const enlarge = Math.min(Math.max(...ratio(LIMITS, 1)), ...ratio(COMFORTABLE, 0));
+    const shrink = Math.min(...ratio(LIMITS, 0));
     if (enlarge > 1) terminal.options.fontSize = FONT_SIZE * enlarge;
     if (shrink < 1) terminal.options.fontSize = FONT_SIZE * shrink;
-    // Cells have whole pixels, so the size can be slightly too large.
+    // Cells have whole pixels, so the number of characters does not follow the size of the font exactly.
     for (let tries = 0; tries < 8; tries += 1) {
       size = fit.proposeDimensions();
-      if (size.cols >= LIMITS.columns[0] && size.rows >= LIMITS.rows[0]) break;
-      terminal.options.fontSize -= 0.5;
+      if (Math.min(...ratio(LIMITS, 0)) < 1) terminal.options.fontSize -= 0.5;
+      else if (size.cols > LIMITS.columns[1] && Math.min(...ratio(COMFORTABLE, 0)) > 1) terminal.options.fontSize += 0.5;
+      else break;
     }
     const columns = clamp(size.cols, LIMITS.columns);
     const rows = clamp(size.rows, LIMITS.rows);

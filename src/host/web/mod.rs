@@ -168,7 +168,7 @@ async fn check_request(
     };
     set_default(
         CONTENT_SECURITY_POLICY,
-        "default-src 'none'; style-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'",
+        "default-src 'none'; style-src 'self'; img-src data:; form-action 'self'; base-uri 'none'; frame-ancestors 'none'",
     );
     set_default(REFERRER_POLICY, "no-referrer");
     set_default(X_CONTENT_TYPE_OPTIONS, "nosniff");

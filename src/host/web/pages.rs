@@ -1,11 +1,12 @@
 //! Pages for participants.
 
+use std::time::Instant;
+
 use axum::Extension;
 use axum::extract::{Path, State};
 use axum::http::header::{CONTENT_SECURITY_POLICY, RETRY_AFTER, SET_COOKIE};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{Html, IntoResponse, Response};
-use std::time::Instant;
 
 use super::WebHost;
 use crate::audit::AuditEvent;
@@ -78,7 +79,7 @@ pub(super) async fn terminal_page(
     let protocol = if request.is_secure { "wss" } else { "ws" };
     let policy = format!(
         "default-src 'none'; script-src 'self'; style-src 'self' 'nonce-{nonce}'; style-src-attr 'unsafe-inline'; \
-         connect-src 'self' {protocol}://{}; img-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+         connect-src 'self' {protocol}://{}; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
         request.host
     );
     ([(CONTENT_SECURITY_POLICY, policy)], page("NovaMind", head, &body, &attributes)).into_response()

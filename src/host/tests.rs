@@ -10,6 +10,7 @@ use crate::audit::{AUDIT_FILE, AuditLog};
 use crate::folder::{HostFolder, ProgramVersion};
 use crate::process::SessionProgram;
 use crate::sessions::{ControlError, SessionState, Sessions};
+use novamind_study::CodeDigest;
 
 /// Echoes lines, and writes a file when the host asks it to save. `crash` ends it with an error, `leave` without one.
 const SCRIPT: &str = r#"
@@ -49,12 +50,24 @@ fn open(study: &Path) -> HostFolder {
     HostFolder::open_or_create(study, &version("1")).expect("a host folder")
 }
 
-/// Runs a test with the sessions of a study.
 fn with_sessions<F: Future<Output = ()>>(absence_limit: Duration, test: impl FnOnce(Sessions) -> F) {
+    with_study_sessions(absence_limit, None, test);
+}
+
+/// Runs a test with the sessions of a study. Then checks the audit log.
+pub(crate) fn with_study_sessions<F: Future<Output = ()>>(
+    absence_limit: Duration,
+    admin_code: Option<CodeDigest>,
+    test: impl FnOnce(Sessions) -> F,
+) {
     let study = study();
+    let mut folder = open(study.path());
+    if admin_code.is_some() {
+        folder.save_settings(None, admin_code).expect("saved");
+    }
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
     runtime.block_on(async {
-        let sessions = Sessions::new(open(study.path()), &program(absence_limit)).expect("sessions");
+        let sessions = Sessions::new(folder, &program(absence_limit)).expect("sessions");
         test(sessions.clone()).await;
         sessions.shut_down().await;
     });

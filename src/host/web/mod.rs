@@ -8,6 +8,8 @@ mod pages;
 mod received_inputs;
 mod request_guard;
 mod socket;
+#[cfg(test)]
+mod tests;
 
 use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;

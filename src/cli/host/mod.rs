@@ -20,7 +20,7 @@ pub struct Options {
     #[command(subcommand)]
     command: Option<HostCommand>,
     #[command(flatten)]
-    serve: serve::Options,
+    serve: serve::ServeOptions,
 }
 
 #[derive(Debug, Subcommand)]

@@ -11,7 +11,7 @@ use crate::cli::{Failure, print};
 use crate::host::{HostOptions, PublicAddress, SessionProgram, WebOptions, check_sandbox_support, serve_host};
 
 #[derive(Debug, Args)]
-pub struct Options {
+pub struct ServeOptions {
     /// Address on which the host accepts browsers; 0.0.0.0:7420 accepts them from other machines
     #[arg(long, default_value = "127.0.0.1:7420", value_name = "ADDRESS:PORT")]
     listen: SocketAddr,
@@ -29,7 +29,7 @@ pub struct Options {
     without_sandbox: bool,
 }
 
-pub fn run(options: &Options, study: Option<&Path>) -> Result<(), Failure> {
+pub fn run(options: &ServeOptions, study: Option<&Path>) -> Result<(), Failure> {
     let study =
         study.ok_or_else(|| Failure::usage("give the folder of the study: novamind host --study DIR"))?;
     let folder = open_folder(study)?;
@@ -69,7 +69,7 @@ pub fn run(options: &Options, study: Option<&Path>) -> Result<(), Failure> {
 }
 
 /// Returns whether the processes of sessions are restricted.
-fn check_sandbox(options: &Options) -> Result<bool, Failure> {
+fn check_sandbox(options: &ServeOptions) -> Result<bool, Failure> {
     const CONSEQUENCE: &str = "Without this restriction, a participant who finds an error in the program can read seeds, keys and \
                                the data of others, and can use the network";
     if options.without_sandbox {

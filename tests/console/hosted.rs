@@ -87,7 +87,7 @@ fn hosted_session_hides_unavailable_commands_and_writes_no_file() {
     let lab = StudyHome::without_week_questions();
     let mut console = open_hosted(&lab, "P01");
     console.press(TO_FIRST_WEEK);
-    for absent in ["report", "start menu", "x-ray", "experimenter", "what if"] {
+    for absent in ["write the report", "start menu", "x-ray", "experimenter", "what if"] {
         console.press(&format!(": '{}'", absent.replace(' ', "' _ '")));
         let screen = console.screen();
         let is_command = |line: &str| line.contains("command ") && line.contains(absent);

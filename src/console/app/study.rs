@@ -16,7 +16,8 @@ impl App {
     pub(super) fn start_study(&mut self, study: Box<Study>, label: Option<String>) {
         let study_state = StudyState::new(&study, label);
         self.has_code = study.protocol.access.code.is_some();
-        self.stage = Stage::Study(Box::new(StudyPage::loading_page(&study_state.title)));
+        let page = StudyPage::loading_page(&study_state.title).in_study(&study_state);
+        self.stage = Stage::Study(Box::new(page));
         self.study = Some(study_state);
         self.send_study_request(StudyRequest::StartStudy(study));
     }

@@ -151,11 +151,20 @@ impl Sessions {
         size: WindowSize,
     ) -> Result<Attachment, AttachError> {
         let session = self.0.sessions.get(label).ok_or(AttachError::UnknownLabel)?;
+        self.check_open(label)?;
+        let attachment = session.attach(client, size).await?;
+        // The session may have been paused while an earlier process was ending.
+        let Err(error) = self.check_open(label) else { return Ok(attachment) };
+        session.close(CloseReason::Ended).await;
+        Err(error)
+    }
+
+    fn check_open(&self, label: &str) -> Result<(), AttachError> {
         if self.0.is_shutting_down.load(Ordering::SeqCst) {
             return Err(AttachError::Shutdown);
         }
         match self.state(label) {
-            SessionState::Open => session.attach(client, size).await,
+            SessionState::Open => Ok(()),
             SessionState::Paused => Err(AttachError::Paused),
             SessionState::Ended(reason) => Err(AttachError::Ended(reason)),
         }

@@ -20,6 +20,10 @@ const SAVE_TIMEOUT: Duration = Duration::from_secs(15);
 const MAX_RESTARTS: usize = 5;
 const RESTART_PERIOD: Duration = Duration::from_secs(60);
 
+/// Asks a terminal to report its focus. The console, which uses the alternate screen, measures attention with these reports,
+/// and the parser of the screen does not store this mode.
+const REPORT_FOCUS: &[u8] = b"\x1b[?1004h";
+
 /// A session of the host. The process runs only while a participant is connected, and for a short time after that.
 #[derive(Debug)]
 pub(crate) struct HostedSession {
@@ -241,7 +245,12 @@ impl HostedSession {
         if pending.needs_screen && is_current {
             pending.needs_screen = false;
             pending.bytes.clear();
-            return Some(Output::Bytes(state.screen.screen().state_formatted().into_bytes()));
+            let screen = state.screen.screen();
+            let mut bytes = screen.state_formatted().into_bytes();
+            if screen.alternate_screen() {
+                bytes.extend_from_slice(REPORT_FOCUS);
+            }
+            return Some(Output::Bytes(bytes));
         }
         if !pending.bytes.is_empty() {
             return Some(Output::Bytes(std::mem::take(&mut pending.bytes)));

@@ -23,6 +23,7 @@ while true; do
     crash) exit 3 ;;
     leave) exit 0 ;;
     size) stty size ;;
+    console) printf '\033[?1049h\033[?1003h\033[?1004h' ;;
     *) echo "got $line" ;;
   esac
 done
@@ -116,6 +117,18 @@ fn second_client_takes_over_with_the_current_screen() {
         let screen = read_until(&mut second, "got three").await;
         assert!(!screen.contains("got two"), "{screen:?}");
         assert_eq!(second.process_number(), 1);
+    });
+}
+
+#[test]
+fn new_client_gets_the_modes_of_the_console() {
+    with_sessions(SessionProgram::ABSENCE_LIMIT, async |sessions| {
+        let mut first = attach(&sessions, "P01").await.expect("attached");
+        first.send_input(b"console\n");
+        read_until(&mut first, "\x1b[?1004h").await;
+        let mut second = attach(&sessions, "P01").await.expect("attached");
+        let screen = read_until(&mut second, "\x1b[?1004h").await;
+        assert!(screen.contains("\x1b[?1003h"), "{screen:?}");
     });
 }
 

@@ -99,7 +99,6 @@
 
   function connect() {
     clearTimeout(retryTimer);
-    hideDialog();
     const address = new URL("/socket", location.href);
     address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
     const opened = new WebSocket(address);
@@ -176,6 +175,7 @@
     receivedBytes = 0;
     reportedBytes = 0;
     element("connection").hidden = true;
+    hideDialog();
     terminal.reset();
     resize();
     for (const input of unacknowledged) send({ type: "input", ...input });
@@ -223,7 +223,9 @@
   }
 
   function hideDialog() {
+    if (element("dialog").hidden) return;
     element("dialog").hidden = true;
+    terminal.focus();
   }
 
   function showNotice(text) {
@@ -233,8 +235,8 @@
   }
 
   element("dialog-button").onclick = () => {
+    hideDialog();
     connect();
-    terminal.focus();
   };
   element("notice-close").onclick = () => {
     element("notice").hidden = true;

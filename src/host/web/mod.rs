@@ -18,8 +18,7 @@ use std::time::Duration;
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{Request, State};
 use axum::http::header::{
-    CACHE_CONTROL, CONTENT_SECURITY_POLICY, REFERRER_POLICY, STRICT_TRANSPORT_SECURITY, UPGRADE,
-    X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS,
+    CACHE_CONTROL, CONTENT_SECURITY_POLICY, REFERRER_POLICY, UPGRADE, X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS,
 };
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode};
 use axum::middleware::Next;
@@ -44,6 +43,8 @@ use request_guard::{CheckedRequest, PARTICIPANT_COOKIE, RequestGuard, cookie};
 const MAX_CONNECTIONS: usize = 1024;
 /// Time limit for the arrival of a request's headers.
 const HEAD_DEADLINE: Duration = Duration::from_secs(10);
+/// Time limit for a request, including its body. Ending a session can take 15 s.
+const REQUEST_DEADLINE: Duration = Duration::from_secs(60);
 /// Number of wrong tokens of an address without a waiting time. A class can share an address.
 const FREE_WRONG_TOKENS: u32 = 20;
 
@@ -155,12 +156,11 @@ async fn check_request(
 ) -> Response {
     let is_reading = matches!(*request.method(), Method::GET | Method::HEAD);
     let needs_origin = !is_reading || request.headers().contains_key(UPGRADE);
-    let mut is_secure = false;
     let mut response = match host.0.guard.check(request.headers(), peer, needs_origin) {
         Ok(checked) => {
-            is_secure = checked.is_secure;
             request.extensions_mut().insert(checked);
-            next.run(request).await
+            let answered = tokio::time::timeout(REQUEST_DEADLINE, next.run(request)).await;
+            answered.unwrap_or_else(|_| StatusCode::REQUEST_TIMEOUT.into_response())
         }
         Err(problem) => (StatusCode::FORBIDDEN, pages::message_page("Not allowed", problem)).into_response(),
     };
@@ -176,9 +176,6 @@ async fn check_request(
     set_default(X_CONTENT_TYPE_OPTIONS, "nosniff");
     set_default(X_FRAME_OPTIONS, "DENY");
     set_default(CACHE_CONTROL, "no-store");
-    if is_secure {
-        set_default(STRICT_TRANSPORT_SECURITY, "max-age=31536000");
-    }
     response
 }
 

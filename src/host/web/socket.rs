@@ -68,6 +68,8 @@ enum HostMessage {
 
 /// Serves the connection of a page until one side closes it.
 pub(super) async fn serve_page(mut socket: WebSocket, host: WebHost, label: Option<String>, address: String) {
+    // A page without a valid cookie is refused before it can keep the connection open.
+    let Some(label) = label else { return close(&mut socket, signed_out()).await };
     let Ok(Some(Ok(Message::Text(text)))) = timeout(SILENCE_LIMIT, socket.recv()).await else { return };
     let Ok(PageMessage::Hello(hello)) = serde_json::from_str(text.as_str()) else { return };
     match attach(&host, &hello, label, address).await {
@@ -81,14 +83,12 @@ pub(super) async fn serve_page(mut socket: WebSocket, host: WebHost, label: Opti
 async fn attach(
     host: &WebHost,
     hello: &Hello,
-    label: Option<String>,
+    label: String,
     address: String,
 ) -> Result<Attachment, HostMessage> {
-    let Some(label) = label.filter(|label| *label == hello.label) else {
-        let text = "This window is no longer signed in, because another link was opened in this browser or the link was \
-                    replaced. Everything is saved. Open your link again, or ask the experimenter.";
-        return Err(HostMessage::Closed { reason: "signed_out", text: text.to_owned() });
-    };
+    if label != hello.label {
+        return Err(signed_out());
+    }
     let has_client = host.sessions().statuses().iter().any(|status| status.label == label && status.client.is_some());
     if hello.resume && has_client && !host.inputs().is_latest_client(&label, &hello.client) {
         return Err(closed_message(&CloseReason::TakenOver));
@@ -103,6 +103,12 @@ async fn attach(
         };
         HostMessage::Closed { reason, text: error.to_string() }
     })
+}
+
+fn signed_out() -> HostMessage {
+    let text = "This window is no longer signed in, because another link was opened in this browser or the link was \
+                replaced. Everything is saved. Open your link again, or ask the experimenter.";
+    HostMessage::Closed { reason: "signed_out", text: text.to_owned() }
 }
 
 fn closed_message(reason: &CloseReason) -> HostMessage {

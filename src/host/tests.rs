@@ -72,7 +72,8 @@ pub(crate) fn with_study_sessions<F: Future<Output = ()>>(
         test(sessions.clone()).await;
         sessions.shut_down().await;
     });
-    let log = std::fs::read_to_string(study.path().join("host").join(AUDIT_FILE)).expect("a log");
+    // Tests without an event have no log.
+    let log = std::fs::read_to_string(study.path().join("host").join(AUDIT_FILE)).unwrap_or_default();
     assert!(AuditLog::verify(&log).is_ok(), "{log}");
 }
 
@@ -248,8 +249,9 @@ fn slow_client_gets_the_current_screen() {
     with_sessions(SessionProgram::ABSENCE_LIMIT, async |sessions| {
         let mut client = attach(&sessions, "P01").await.expect("attached");
         read_until(&mut client, "ready").await;
-        let line = format!("{}\n", "x".repeat(70));
-        for _ in 0..2000 {
+        // Fewer messages than may wait for the process, and more output than may wait for the client.
+        let line = format!("{}\n", "x".repeat(200));
+        for _ in 0..900 {
             client.send_input(line.as_bytes());
             tokio::task::yield_now().await;
         }

@@ -42,12 +42,17 @@ impl AttemptLimit {
     /// Counts a failure of an address. Returns the number of its failures.
     pub fn record_failure(&self, address: IpAddr, now: Instant) -> u32 {
         let mut failures = self.failures.lock().unwrap_or_else(PoisonError::into_inner);
-        failures.retain(|_, failures| now.duration_since(failures.last) < FORGET_AFTER);
+        if failures.len() >= MAX_ADDRESSES {
+            failures.retain(|_, failures| now.duration_since(failures.last) < FORGET_AFTER);
+        }
         if failures.len() >= MAX_ADDRESSES {
             let oldest = failures.iter().min_by_key(|(_, failures)| failures.last).map(|(address, _)| *address);
             oldest.map(|address| failures.remove(&address));
         }
         let failures = failures.entry(network(address)).or_insert(Failures { count: 0, last: now });
+        if now.duration_since(failures.last) >= FORGET_AFTER {
+            failures.count = 0;
+        }
         failures.count = failures.count.saturating_add(1);
         failures.last = now;
         failures.count
@@ -99,8 +104,10 @@ mod tests {
             limit.record_failure(IpAddr::V4(number.into()), start + Duration::from_millis(u64::from(number)));
         }
         assert_eq!(limit.failures.lock().expect("failures").len(), MAX_ADDRESSES);
-        limit.record_failure(address("192.0.2.7"), start + FORGET_AFTER * 2);
+        let later = start + FORGET_AFTER * 2;
+        assert_eq!(limit.record_failure(address("192.0.2.7"), later), 1);
         assert_eq!(limit.failures.lock().expect("failures").len(), 1);
+        assert_eq!(limit.record_failure(address("192.0.2.7"), later + FORGET_AFTER), 1);
     }
 
     #[test]

@@ -296,8 +296,9 @@ print("end")
         let [own, other] = ["P01", "P02"].map(|label| host.path().join(label));
         let mut paths = vec![host.path().to_owned(), own.join("study"), own.join("runs"), own.join("tmp")];
         for session in [&own, &other] {
-            ["study", "runs", "tmp/script"]
-                .map(|name| std::fs::create_dir_all(session.join(name)).expect("a folder"));
+            for name in ["study", "runs", "tmp/script"] {
+                std::fs::create_dir_all(session.join(name)).expect("a folder");
+            }
             for file in ["run.toml", "trajectory.jsonl"] {
                 write(session.join("runs").join(file), "seed").expect("written");
                 paths.push(session.join("runs").join(file));

@@ -40,7 +40,7 @@ use super::context::{EditorDocument, ScreenContext, ScreenId};
 use super::dialogs::Dialog;
 use super::dialogs::next_week::NextWeekDialog;
 use super::effect::Effect;
-use super::hosted::{self, hosted_keys};
+use super::hosted::hosted_keys;
 use super::keys::KeyBindings;
 use super::own_commands::{OwnCommands, ProgramCall};
 use super::playback::PlaybackViewer;
@@ -99,6 +99,27 @@ pub enum Order {
     Mouse(bool),
     /// Exit, with an exit code and a text to print.
     Exit(u8, Option<String>),
+}
+
+impl Order {
+    /// Returns whether the order is executed in a hosted session. Orders that write files of the user's choice or start
+    /// programs are dropped, whatever requested them.
+    fn is_executed_in_hosted_session(&self) -> bool {
+        match self {
+            Order::Job(Job::SavePreferences(_))
+            | Order::Write(_)
+            | Order::SaveQuery(..)
+            | Order::RunProgram(_)
+            | Order::OpenEditor(_) => false,
+            Order::Job(_)
+            | Order::Ask(..)
+            | Order::CancelQuery
+            | Order::Copy(_)
+            | Order::Redraw
+            | Order::Mouse(_)
+            | Order::Exit(..) => true,
+        }
+    }
 }
 
 /// A status message in the footer.
@@ -341,7 +362,7 @@ impl App {
     pub fn take_orders(&mut self) -> Vec<Order> {
         let mut orders = std::mem::take(&mut self.orders);
         if self.is_hosted {
-            orders.retain(hosted::is_executed);
+            orders.retain(Order::is_executed_in_hosted_session);
         }
         orders
     }

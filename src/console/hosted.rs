@@ -4,18 +4,10 @@
 //! in exactly one of two lists. An action that is in neither list is not available, and a test fails.
 
 use super::action::Action;
-use super::app::Order;
 use super::keys::KeyBindings;
-use novamind_worker::Job;
 
 /// Message for an action that is not available in a hosted session.
 pub const NOT_AVAILABLE: &str = "not available in a hosted session";
-
-/// Text on the last page and after the end of a hosted session.
-pub const CLOSE_WINDOW: &str = "Everything is saved. You can close this window.";
-
-/// Explains how to continue a hosted session.
-pub const CONTINUE_LATER: &str = "To continue later, open your link again, or connect again in the same way.";
 
 /// Actions that are available in hosted sessions.
 const AVAILABLE: &[Action] = &[
@@ -298,25 +290,6 @@ pub fn is_available(action: Action) -> bool {
 /// Returns the key bindings of hosted sessions: bindings of actions that are not available are removed.
 pub fn hosted_keys(keys: KeyBindings) -> KeyBindings {
     keys.retain_actions(is_available)
-}
-
-/// Returns whether an order is executed in a hosted session. Orders that write files of the user's choice or start
-/// programs are dropped, whatever requested them.
-pub fn is_executed(order: &Order) -> bool {
-    match order {
-        Order::Job(Job::SavePreferences(_))
-        | Order::Write(_)
-        | Order::SaveQuery(..)
-        | Order::RunProgram(_)
-        | Order::OpenEditor(_) => false,
-        Order::Job(_)
-        | Order::Ask(..)
-        | Order::CancelQuery
-        | Order::Copy(_)
-        | Order::Redraw
-        | Order::Mouse(_)
-        | Order::Exit(..) => true,
-    }
 }
 
 #[cfg(test)]

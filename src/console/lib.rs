@@ -19,7 +19,7 @@ mod files;
 mod forecast_fan;
 mod frame;
 pub mod headless;
-pub mod hosted;
+mod hosted;
 mod input_gate;
 pub mod keys;
 mod lesson;

@@ -16,7 +16,9 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::query_library::QueryLibrary;
 use novamind_report::prose::to_plain_text;
 use novamind_session::Session;
-use novamind_study::{DECLINED_NOTICE, NextStep, ParticipantSession, Study};
+use novamind_study::{
+    CLOSE_WINDOW_NOTICE, DECLINED_NOTICE, NextStep, ParticipantSession, RETURN_LATER_NOTICE, Study,
+};
 
 /// The reason why a visit ends early.
 enum SessionStop {
@@ -58,7 +60,7 @@ impl Entrance<'_> {
     fn describe_return(self) -> String {
         match self {
             Entrance::Label(command) => format!("To continue, run `{command}` and give the same label."),
-            Entrance::Hosted(_) => format!("{HOSTED_CLOSE} {HOSTED_RETURN}"),
+            Entrance::Hosted(_) => format!("{CLOSE_WINDOW_NOTICE} {RETURN_LATER_NOTICE}"),
         }
     }
 
@@ -66,13 +68,10 @@ impl Entrance<'_> {
     fn describe_end(self, report: &str) -> String {
         match self {
             Entrance::Label(_) => report.to_owned(),
-            Entrance::Hosted(_) => HOSTED_CLOSE.to_owned(),
+            Entrance::Hosted(_) => CLOSE_WINDOW_NOTICE.to_owned(),
         }
     }
 }
-
-const HOSTED_CLOSE: &str = "Everything is saved. You can close this window.";
-const HOSTED_RETURN: &str = "To continue later, open your link again, or connect again in the same way.";
 
 /// Guides a participant through a study. Returns the exit code.
 ///
@@ -318,7 +317,8 @@ impl SessionHost<'_> {
             EndReason::Quit | EndReason::RunOver if is_finished => Ok(()),
             EndReason::RecordLost => Err(SessionStop::Left(end.exit_code())),
             end => {
-                let text = format!("All confirmed actions are saved. {}", self.entrance.describe_return());
+                let saved = if self.entrance.is_hosted() { "" } else { "All confirmed actions are saved. " };
+                let text = format!("{saved}{}", self.entrance.describe_return());
                 self.show_text("later", &text)?;
                 Err(SessionStop::Left(end.exit_code()))
             }

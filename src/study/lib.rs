@@ -25,7 +25,9 @@ pub use keys::{
     load_seal_key,
 };
 pub use novamind_record::folder::configuration::CONSENT_FILE;
-pub use participant_session::{DECLINED_NOTICE, NextStep, ParticipantSession};
+pub use participant_session::{
+    CLOSE_WINDOW_NOTICE, DECLINED_NOTICE, NextStep, ParticipantSession, RETURN_LATER_NOTICE,
+};
 pub use questions::{AnswerFormat, Occasion, Question, Questionnaire};
 pub use remarks::{REMARKS_FILE, Remark, read_remarks, write_remark};
 pub use session_status::{SessionState, SessionStatus, session_statuses};

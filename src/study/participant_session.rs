@@ -23,6 +23,13 @@ use novamind_session::{Access, NewRun, Session, Storage, StudyOptions};
 pub const DECLINED_NOTICE: &str = "You did not agree. Kept: your label, the time of your visit, and that you did not agree. Nothing else \
                             was recorded.";
 
+/// Message on the last page of a hosted session.
+pub const CLOSE_WINDOW_NOTICE: &str = "Everything is saved. You can close this window.";
+
+/// Message to a participant of a hosted session who can continue later.
+pub const RETURN_LATER_NOTICE: &str =
+    "To continue later, open your link again, or connect again in the same way.";
+
 /// The visit of a participant who has entered a valid label.
 #[derive(Debug, Clone)]
 pub struct ParticipantSession {

@@ -233,7 +233,10 @@ fn secret_seeds_are_drawn_once_and_kept_by_added_participants() {
     let added = lab.assignment();
     assert!(added.starts_with(&first) && seeds(&added) == seeds(&first), "{first}\n{added}");
     let protocol = lab.run("protocol", &[]).stdout;
-    assert!(protocol.contains("plays 2 secret seeds in random order. Commitment to the seeds: pilot:"), "{protocol}");
+    assert!(
+        protocol.contains("plays 2 secret seeds in random order. Commitment to the seeds: pilot:"),
+        "{protocol}"
+    );
     assert!(seeds(&first).iter().all(|seed| !protocol.contains(&seed.to_string())), "{protocol}");
     // Another draw has other seeds, and so another commitment.
     fs::remove_file(lab.path("pilot/assignment.csv")).expect("removed");
@@ -249,7 +252,11 @@ fn small_seeds_of_a_hosted_study_are_noted() {
     assert!(!lab.run("check", &[]).stdout.contains("below 4,294,967,296"));
     fs::create_dir(lab.path("pilot/host")).expect("a folder");
     let checked = lab.run("check", &[]);
-    assert!(checked.stdout.contains("note  seeds       a seed of the sessions is below 4,294,967,296"), "{}", checked.stdout);
+    assert!(
+        checked.stdout.contains("note  seeds       a seed of the sessions is below 4,294,967,296"),
+        "{}",
+        checked.stdout
+    );
     lab.edit("seed = 2_718", "seed = 4_294_967_296");
     assert!(!lab.run("check", &[]).stdout.contains("below 4,294,967,296"));
 }

@@ -100,7 +100,10 @@ fn leaving_and_returning_gains_no_time() {
             let unseen = if cause.is_none() { 60.0 } else { 0.0 };
             assert_eq!(run.seconds_left(), 300.0 - unseen, "{about}");
             run.leave(cause, 240);
-            assert_eq!(run.events(), if cause.is_none() { [LimitEvent::FiledNaively] } else { [LimitEvent::Warned] });
+            assert_eq!(
+                run.events(),
+                if cause.is_none() { [LimitEvent::FiledNaively] } else { [LimitEvent::Warned] }
+            );
             // After a kill at the moment of the limit, the limit takes effect again.
             run.leave(None, 70);
             assert_eq!(run.events(), [LimitEvent::FiledNaively], "{about}");

@@ -5,10 +5,10 @@ use super::{App, BusyState, Order, Stage};
 use crate::context::ScreenId;
 use crate::dialogs::confirm::ConfirmDialog;
 use crate::effect::Effect;
-use crate::hosted::CLOSE_WINDOW;
 use crate::screens::menu::StartMenu;
 use novamind_record::trajectory::record::DetachCause;
 use novamind_session::Access;
+use novamind_study::CLOSE_WINDOW_NOTICE;
 use novamind_worker::Job;
 use novamind_worker::request::Request;
 
@@ -130,7 +130,7 @@ impl App {
             }
         };
         if self.is_hosted {
-            return self.orders.push(Order::Exit(code, Some(CLOSE_WINDOW.to_owned())));
+            return self.orders.push(Order::Exit(code, Some(CLOSE_WINDOW_NOTICE.to_owned())));
         }
         let farewell = self.run().filter(|run| run.playback.is_none()).map(|run| {
             let company = &run.company.observation;

@@ -11,7 +11,6 @@ use crate::dialogs::final_page::FinalPage;
 use crate::dialogs::next_week::NextWeekDialog;
 use crate::dialogs::week_report::WeekReportDialog;
 use crate::effect::Effect;
-use crate::hosted::CONTINUE_LATER;
 use crate::playback::PlaybackViewer;
 use crate::screens::Screens;
 use crate::tour::Tour;
@@ -20,6 +19,7 @@ use novamind_course::CollectedClass;
 use novamind_report::RunReport;
 use novamind_report::class::ClassDisplayOptions;
 use novamind_session::{SettingChange, WeekResult};
+use novamind_study::RETURN_LATER_NOTICE;
 use novamind_tools::Rejection;
 use novamind_tui::text::format_number;
 use novamind_worker::company::DisplayedCompany;
@@ -73,7 +73,8 @@ impl App {
             Response::Closed(problem) => self.on_run_closed(problem),
             Response::Crashed(words) => {
                 if self.is_hosted {
-                    let text = format!("Internal error. All confirmed actions are saved. {CONTINUE_LATER}");
+                    let text =
+                        format!("Internal error. All confirmed actions are saved. {RETURN_LATER_NOTICE}");
                     return self.orders.push(Order::Exit(1, Some(text)));
                 }
                 let saved = self.run().map_or(String::new(), |run| match &run.company.folder {

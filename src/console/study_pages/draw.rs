@@ -4,9 +4,8 @@ use ratatui::layout::Rect;
 
 use super::{StudyPage, StudyPageKind, WITHDRAW};
 use crate::action::Action;
-use crate::hosted::{CLOSE_WINDOW, CONTINUE_LATER};
 use crate::keys::KeyBindings;
-use novamind_study::DECLINED_NOTICE;
+use novamind_study::{CLOSE_WINDOW_NOTICE, DECLINED_NOTICE, RETURN_LATER_NOTICE};
 use novamind_tui::canvas::{Canvas, centered_rect, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
@@ -73,7 +72,7 @@ impl StudyPage {
         let go = key(Action::Continue);
         let experimenter = if self.is_hosted { "" } else { "Please tell the experimenter." };
         let next_person = strong(match self.is_hosted {
-            true => format!("{CLOSE_WINDOW} {go} ends the session"),
+            true => format!("{CLOSE_WINDOW_NOTICE} {go} ends the session"),
             false => format!("{go} next participant"),
         });
         match &self.kind {
@@ -115,7 +114,7 @@ impl StudyPage {
                     true => "The session continues where you left off.",
                 };
                 let kept = match self.is_hosted {
-                    true => format!("Everything you confirm is saved. You can leave at any time. {CONTINUE_LATER}"),
+                    true => format!("Everything you confirm is saved. You can leave at any time. {RETURN_LATER_NOTICE}"),
                     false => {
                         "Everything you confirm is saved. You can leave at any time and continue later with your label."
                             .to_owned()
@@ -138,7 +137,7 @@ impl StudyPage {
                 "Left",
                 vec![
                     text(match self.is_hosted {
-                        true => CONTINUE_LATER,
+                        true => RETURN_LATER_NOTICE,
                         false => {
                             "Everything is saved. To continue later, return to this computer and enter your label again."
                         }

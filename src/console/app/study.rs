@@ -93,8 +93,16 @@ impl App {
             StudyResponse::Next(step) => {
                 study_state.due_questions.clear();
                 study_state.is_practice = matches!(step, NextStep::Practice { .. });
-                let opens = matches!(step, NextStep::Questions(_));
-                self.show_study_page(|title| StudyPage::from_step(title, step));
+                // A participant who returns to a hosted session continues at the same place.
+                let resumes = matches!(
+                    step,
+                    NextStep::Session(Some(_)) | NextStep::Practice { unfinished: Some(_), .. }
+                );
+                let opens = matches!(step, NextStep::Questions(_)) || study_state.label.is_some() && resumes;
+                self.show_study_page(|title| match opens {
+                    true => StudyPage::loading_page(title),
+                    false => StudyPage::from_step(title, step),
+                });
                 if opens {
                     self.send_study_request(StudyRequest::Play);
                 }

@@ -107,7 +107,7 @@ fn participant_plays_through_kills_of_the_session_and_the_host() {
     let study = create_study(folder.path());
     let host = Host::start(&study);
     let mut terminal = host.attach("P01", (120, 40));
-    terminal.wait_for("Running a company");
+    terminal.wait_for("enter starts");
     terminal.type_keys("\r");
     terminal.wait_for("day 0/28");
     play_week(&mut terminal, 1);

@@ -88,7 +88,8 @@ impl Access {
             let token = to_hexadecimal(&random_bytes::<16>()?);
             let code = random_code()?;
             let salt = to_hexadecimal(&random_bytes::<8>()?);
-            let entry = AccessEntry { token: token_digest(&token), code: CodeDigest::from_code(&code, &salt) };
+            let entry =
+                AccessEntry { token: token_digest(&token), code: CodeDigest::from_code(&code, &salt) };
             entries.insert(label.clone(), entry);
             issued.push(Credentials { label: label.clone(), token, code });
         }
@@ -123,7 +124,9 @@ fn random_code() -> Result<String, RunError> {
 fn random_bytes<const COUNT: usize>() -> Result<[u8; COUNT], RunError> {
     let mut bytes = [0; COUNT];
     getrandom::fill(&mut bytes).map_err(|error| {
-        RunError::InvalidRequest(format!("the system provides no random numbers: {error}; nothing was written"))
+        RunError::InvalidRequest(format!(
+            "the system provides no random numbers: {error}; nothing was written"
+        ))
     })?;
     Ok(bytes)
 }

@@ -42,7 +42,10 @@ impl fmt::Display for AttachFailure {
         match self {
             AttachFailure::Refused(problem) => out.write_str(problem),
             AttachFailure::Io(error) => {
-                write!(out, "the connection to the host failed: {error}. Everything that you confirmed is saved; connect again")
+                write!(
+                    out,
+                    "the connection to the host failed: {error}. Everything that you confirmed is saved; connect again"
+                )
             }
             AttachFailure::Signal(_) => Ok(()),
         }
@@ -87,7 +90,8 @@ async fn run(socket: &Path, label: Option<String>) -> Result<String, AttachFailu
     loop {
         match receive(&mut from).await? {
             HostMessage::AskForCode => {
-                let (label, code) = tokio::task::spawn_blocking(ask_for_code).await.map_err(io::Error::other)??;
+                let (label, code) =
+                    tokio::task::spawn_blocking(ask_for_code).await.map_err(io::Error::other)??;
                 send(&mut to, &ClientMessage::Code { label, code }).await?;
             }
             HostMessage::Attached { .. } => break,
@@ -106,9 +110,9 @@ async fn relay(mut from: OwnedReadHalf, mut to: OwnedWriteHalf) -> Result<String
     let mut keys = read_keys();
     // A separate task, because a message must not be read in parts.
     let (messages, mut received) = mpsc::channel(4);
-    tokio::spawn(async move {
-        while messages.send(receive::<HostMessage>(&mut from).await).await.is_ok() {}
-    });
+    tokio::spawn(
+        async move { while messages.send(receive::<HostMessage>(&mut from).await).await.is_ok() {} },
+    );
     let mut resized = signal(SignalKind::window_change())?;
     let mut hung_up = signal(SignalKind::hangup())?;
     let mut terminated = signal(SignalKind::terminate())?;
@@ -190,7 +194,10 @@ impl View {
             return Ok(());
         }
         let (least_columns, least_rows) = SMALLEST_WINDOW;
-        write_out(format!("Enlarge the window to {least_columns} x {least_rows} (now {columns} x {rows}).").as_bytes())
+        write_out(
+            format!("Enlarge the window to {least_columns} x {least_rows} (now {columns} x {rows}).")
+                .as_bytes(),
+        )
     }
 }
 

@@ -69,16 +69,20 @@ impl fmt::Display for AttachError {
             AttachError::UnknownLabel => {
                 out.write_str("this label is not in the study: check the label, or ask the experimenter")
             }
-            AttachError::Paused => {
-                out.write_str("the experimenter has paused this session: everything is saved; try again later")
-            }
+            AttachError::Paused => out
+                .write_str("the experimenter has paused this session: everything is saved; try again later"),
             AttachError::Ended(reason) if reason.is_empty() => {
                 out.write_str("the experimenter has ended this session")
             }
             AttachError::Ended(reason) => write!(out, "the experimenter has ended this session: {reason}"),
-            AttachError::Shutdown => out.write_str("the host is shutting down: everything is saved; try again later"),
+            AttachError::Shutdown => {
+                out.write_str("the host is shutting down: everything is saved; try again later")
+            }
             AttachError::CannotStart(problem) => {
-                write!(out, "the session cannot be started: {problem}. Everything is saved; ask the experimenter")
+                write!(
+                    out,
+                    "the session cannot be started: {problem}. Everything is saved; ask the experimenter"
+                )
             }
         }
     }
@@ -110,9 +114,9 @@ impl fmt::Display for Notice {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Notice::Experimenter(text) => write!(out, "Message from the experimenter: {text}"),
-            Notice::Restarted => {
-                out.write_str("The session stopped unexpectedly and was restarted. Everything you confirmed is saved.")
-            }
+            Notice::Restarted => out.write_str(
+                "The session stopped unexpectedly and was restarted. Everything you confirmed is saved.",
+            ),
         }
     }
 }
@@ -137,7 +141,9 @@ impl fmt::Display for CloseReason {
         out.write_str(match self {
             CloseReason::TakenOver => "This session was opened in another window, which continues it.",
             CloseReason::Ended => "The session is closed. Everything is saved.",
-            CloseReason::Paused => "The experimenter has paused this session. Everything is saved; connect again later.",
+            CloseReason::Paused => {
+                "The experimenter has paused this session. Everything is saved; connect again later."
+            }
             CloseReason::Shutdown => "The host is shutting down. Everything is saved; connect again later.",
             CloseReason::Failed => {
                 "The session failed repeatedly. Everything you confirmed is saved; ask the experimenter."

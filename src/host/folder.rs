@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 use novamind_record::error::RunError;
 use novamind_record::files::write_atomically;
 use novamind_record::folder::configuration::CONSENT_FILE;
-use novamind_study::{ASSIGNMENT_FILE, Assignment, AssignmentRow, CodeDigest, SEAL_KEY_FILE, STUDY_FILE, Study};
+use novamind_study::{
+    ASSIGNMENT_FILE, Assignment, AssignmentRow, CodeDigest, SEAL_KEY_FILE, STUDY_FILE, Study,
+};
 
 use crate::access::Access;
 use crate::audit::AuditLog;
@@ -74,8 +76,7 @@ impl HostFolder {
             ))
         })?;
         let path = study.folder.join(HOST_FOLDER);
-        let mut folder =
-            HostFolder { path, study, rows: assignment.rows, url: None, admin_code: None };
+        let mut folder = HostFolder { path, study, rows: assignment.rows, url: None, admin_code: None };
         create_private_folder(&folder.path)?;
         create_private_folder(&folder.path.join(SESSIONS_FOLDER))?;
         folder.check_description(program)?;
@@ -201,13 +202,16 @@ impl HostFolder {
                 copy.join(ASSIGNMENT_FILE).display()
             )));
         }
-        for path in [&folder, &copy, &copy.join(QUESTIONS_FOLDER), &folder.join("runs"), &folder.join("tmp")] {
+        for path in [&folder, &copy, &copy.join(QUESTIONS_FOLDER), &folder.join("runs"), &folder.join("tmp")]
+        {
             create_private_folder(path)?;
         }
         for name in [STUDY_FILE, CONSENT_FILE, SEAL_KEY_FILE] {
             copy_if_exists(&self.study.folder.join(name), &copy.join(name))?;
         }
-        for entry in std::fs::read_dir(self.study.folder.join(QUESTIONS_FOLDER)).into_iter().flatten().flatten() {
+        for entry in
+            std::fs::read_dir(self.study.folder.join(QUESTIONS_FOLDER)).into_iter().flatten().flatten()
+        {
             copy_if_exists(&entry.path(), &copy.join(QUESTIONS_FOLDER).join(entry.file_name()))?;
         }
         write_private(&copy.join(ASSIGNMENT_FILE), assignment.as_bytes())

@@ -70,7 +70,9 @@ pub(crate) async fn send(to: &mut (impl AsyncWrite + Unpin), message: &impl Seri
 ///
 /// # Errors
 /// The connection is closed, or the message is too long or malformed.
-pub(crate) async fn receive<T: for<'de> Deserialize<'de>>(from: &mut (impl AsyncRead + Unpin)) -> io::Result<T> {
+pub(crate) async fn receive<T: for<'de> Deserialize<'de>>(
+    from: &mut (impl AsyncRead + Unpin),
+) -> io::Result<T> {
     let length = from.read_u32().await? as usize;
     if length > MAX_CONTENT_BYTES {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "the message is too long"));

@@ -25,7 +25,9 @@ pub use attachment::{AttachError, Attachment, ClientKind, CloseReason, Notice, O
 pub use audit::{AUDIT_FILE, AuditEvent, AuditLog};
 pub use folder::{HOST_FOLDER, HostFolder, ProgramVersion};
 pub use process::{SessionProgram, take_terminal};
-pub use sandbox::{SandboxError, check_sandbox_support, limit_session_resources, restrict_to_script, restrict_to_session};
+pub use sandbox::{
+    SandboxError, check_sandbox_support, limit_session_resources, restrict_to_script, restrict_to_session,
+};
 pub use serve::{HostError, HostOptions, serve_host};
 pub use sessions::{ControlError, SessionState, SessionStatus, Sessions};
 pub use socket::HostSocket;

@@ -147,7 +147,9 @@ mod linux {
 
     pub fn check_support() -> Result<(), String> {
         let explain = |error: RulesetError| {
-            format!("this system cannot restrict programs with Landlock (Linux 6.7 or newer is needed): {error}")
+            format!(
+                "this system cannot restrict programs with Landlock (Linux 6.7 or newer is needed): {error}"
+            )
         };
         ruleset().map(drop).map_err(explain)
     }
@@ -162,7 +164,8 @@ mod linux {
             rules = allow(rules, path, read)?;
         }
         // Files in these folders cannot be executed.
-        let write = AccessFs::from_all(WANTED) & !AccessFs::Execute & !AccessFs::MakeSock & !AccessFs::IoctlDev;
+        let write =
+            AccessFs::from_all(WANTED) & !AccessFs::Execute & !AccessFs::MakeSock & !AccessFs::IoctlDev;
         for path in writable {
             rules = allow(rules, path, write)?;
         }
@@ -224,13 +227,23 @@ mod tests {
         let (host, root) = (host.path().to_owned(), own.clone());
         in_session(&root, move || {
             assert!(read(own.join("study/study.toml")).is_ok());
-            assert!(write(own.join("runs/line"), "line").is_ok() && write(own.join("tmp/line"), "line").is_ok());
+            assert!(
+                write(own.join("runs/line"), "line").is_ok() && write(own.join("tmp/line"), "line").is_ok()
+            );
             assert!(write(own.join("study/assignment.csv"), "label").is_err());
             assert!(std::fs::rename(own.join("runs/line"), other.join("runs/line")).is_err());
-            for path in [Path::new("/etc/passwd"), &other.join("study/study.toml"), &host.join("access.json")] {
+            for path in [Path::new("/etc/passwd"), &other.join("study/study.toml"), &host.join("access.json")]
+            {
                 assert!(read(path).is_err(), "{}", path.display());
             }
-            for path in [Path::new("/etc"), Path::new("/proc"), Path::new("/root"), &host, &other, &other.join("runs")] {
+            for path in [
+                Path::new("/etc"),
+                Path::new("/proc"),
+                Path::new("/root"),
+                &host,
+                &other,
+                &other.join("runs"),
+            ] {
                 assert!(read_dir(path).is_err(), "{}", path.display());
             }
             assert!(read("/proc/self/environ").is_err() && read("/proc/1/cmdline").is_err());

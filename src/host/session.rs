@@ -10,7 +10,9 @@ use rustix::process::Signal;
 use tokio::sync::{Notify, mpsc};
 use tokio::time::timeout;
 
-use crate::attachment::{AttachError, Attachment, ClientKind, ClientQueue, CloseReason, Notice, Output, WindowSize};
+use crate::attachment::{
+    AttachError, Attachment, ClientKind, ClientQueue, CloseReason, Notice, Output, WindowSize,
+};
 use crate::audit::{AuditEvent, AuditLog};
 use crate::process::{SessionProgram, StartedProcess, Terminal, send_signal};
 
@@ -107,7 +109,11 @@ impl HostedSession {
     }
 
     /// Attaches a client, closes the connection of an earlier client, and starts the process if it is not running.
-    pub async fn attach(self: &Arc<Self>, kind: ClientKind, size: WindowSize) -> Result<Attachment, AttachError> {
+    pub async fn attach(
+        self: &Arc<Self>,
+        kind: ClientKind,
+        size: WindowSize,
+    ) -> Result<Attachment, AttachError> {
         let _guard = self.lifecycle.lock().await;
         // A process that is saving must end before the next one can open the run.
         if self.lock().process.as_ref().is_some_and(|process| process.closing.is_some()) {
@@ -137,11 +143,8 @@ impl HostedSession {
     }
 
     fn start_process(&self, size: WindowSize) -> std::io::Result<StartedProcess> {
-        let arguments = [
-            OsString::from(&self.label),
-            OsString::from("--folder"),
-            self.folder.clone().into_os_string(),
-        ];
+        let arguments =
+            [OsString::from(&self.label), OsString::from("--folder"), self.folder.clone().into_os_string()];
         let temporary = self.folder.join("tmp");
         let environment: Vec<(OsString, OsString)> = [
             ("TERM", OsString::from("xterm-256color")),
@@ -164,8 +167,7 @@ impl HostedSession {
         let StartedProcess { mut child, terminal } = started;
         let (input, mut inputs) = mpsc::channel::<Vec<u8>>(1024);
         let id = child.id().unwrap_or_default();
-        state.process =
-            Some(RunningProcess { id, terminal: terminal.clone(), input, closing: None });
+        state.process = Some(RunningProcess { id, terminal: terminal.clone(), input, closing: None });
         let writer = terminal.clone();
         tokio::spawn(async move {
             while let Some(bytes) = inputs.recv().await {
@@ -223,7 +225,8 @@ impl HostedSession {
                 return;
             }
         }
-        let reason = process.closing.unwrap_or(if is_success { CloseReason::Ended } else { CloseReason::Failed });
+        let reason =
+            process.closing.unwrap_or(if is_success { CloseReason::Ended } else { CloseReason::Failed });
         if let Some(client) = state.client.take() {
             client.close(reason);
             state.client_changes += 1;

@@ -82,7 +82,9 @@ impl fmt::Display for ControlError {
         match self {
             ControlError::UnknownLabel => out.write_str("this label is not in the study"),
             ControlError::HasEnded => out.write_str("this session has been ended"),
-            ControlError::NotConnected => out.write_str("the participant is not connected; the message was not sent"),
+            ControlError::NotConnected => {
+                out.write_str("the participant is not connected; the message was not sent")
+            }
             ControlError::Save(error) => write!(out, "the new state of the session was not saved: {error}"),
         }
     }
@@ -230,9 +232,12 @@ impl Sessions {
     /// Ends the processes of all sessions and refuses clients. Waits until all processes have saved.
     pub async fn shut_down(&self) {
         self.0.is_shutting_down.store(true, Ordering::SeqCst);
-        let closing = self.0.sessions.values().cloned().map(|session| {
-            tokio::spawn(async move { session.close(CloseReason::Shutdown).await })
-        });
+        let closing = self
+            .0
+            .sessions
+            .values()
+            .cloned()
+            .map(|session| tokio::spawn(async move { session.close(CloseReason::Shutdown).await }));
         for task in closing.collect::<Vec<_>>() {
             let _ = task.await;
         }

@@ -182,7 +182,10 @@ impl SocketHost {
             tokio::time::sleep(WRONG_CODE_DELAY).await;
             last_label = label.chars().take(40).collect();
         }
-        Ok(Err((last_label, "the label or the code is wrong: check both, or ask the experimenter".to_owned())))
+        Ok(Err((
+            last_label,
+            "the label or the code is wrong: check both, or ask the experimenter".to_owned(),
+        )))
     }
 }
 
@@ -190,7 +193,8 @@ impl Account {
     /// Returns the account with this number. Accounts without a name get a name that no participant can have.
     async fn of_uid(uid: u32) -> Account {
         // `id` also knows accounts of directory services.
-        let output = tokio::process::Command::new("/usr/bin/id").args(["-nu", &uid.to_string()]).output().await;
+        let output =
+            tokio::process::Command::new("/usr/bin/id").args(["-nu", &uid.to_string()]).output().await;
         let name = output.ok().filter(|output| output.status.success());
         let name = name.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
         Account { uid, name: name.filter(|name| !name.is_empty()).unwrap_or_else(|| format!("#{uid}")) }

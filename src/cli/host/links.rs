@@ -58,9 +58,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     // The file is created first: if it cannot be written, earlier links stay valid.
     let file = &options.csv;
-    let mut out = OpenOptions::new().write(true).create_new(true).mode(0o600).open(file).map_err(|error| {
-        Failure::failed(format!("{}: {error}; no links were created", file.display()))
-    })?;
+    let mut out =
+        OpenOptions::new().write(true).create_new(true).mode(0o600).open(file).map_err(|error| {
+            Failure::failed(format!("{}: {error}; no links were created", file.display()))
+        })?;
     let issued = folder.access().issue(&labels)?;
     let mut text = "label,link,code\n".to_owned();
     for one in &issued {

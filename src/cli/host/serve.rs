@@ -8,7 +8,9 @@ use clap::Args;
 
 use super::open_folder;
 use crate::cli::{Failure, print};
-use crate::host::{HostOptions, PublicAddress, SessionProgram, WebOptions, check_sandbox_support, serve_host};
+use crate::host::{
+    HostOptions, PublicAddress, SessionProgram, WebOptions, check_sandbox_support, serve_host,
+};
 
 #[derive(Debug, Args)]
 pub struct ServeOptions {
@@ -76,8 +78,9 @@ fn check_sandbox(options: &ServeOptions) -> Result<bool, Failure> {
         eprintln!("novamind: the processes of sessions are not restricted. {CONSEQUENCE}");
         return Ok(false);
     }
-    let refused =
-        |problem| Failure::failed(format!("{problem}. {CONSEQUENCE}. To start anyway, add --without-sandbox"));
+    let refused = |problem| {
+        Failure::failed(format!("{problem}. {CONSEQUENCE}. To start anyway, add --without-sandbox"))
+    };
     check_sandbox_support().map_err(refused)?;
     Ok(true)
 }

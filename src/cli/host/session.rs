@@ -27,7 +27,8 @@ pub struct Options {
 }
 
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let failed = |error: &dyn std::fmt::Display| Failure::failed(format!("the session cannot start: {error}"));
+    let failed =
+        |error: &dyn std::fmt::Display| Failure::failed(format!("the session cannot start: {error}"));
     take_terminal().map_err(|error| failed(&error))?;
     limit_session_resources().map_err(|error| failed(&error))?;
     if !options.without_sandbox {

@@ -9,8 +9,8 @@ use axum::extract::{Form, Path, State};
 use axum::http::header::{RETRY_AFTER, SET_COOKIE};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Redirect, Response};
-use axum::{Extension, Router};
 use axum::routing::{get, post};
+use axum::{Extension, Router};
 use serde::Deserialize;
 
 use super::admin_page;
@@ -108,7 +108,8 @@ async fn overview(State(host): State<WebHost>, head: HeaderMap) -> Response {
 
 fn sign_in_page(host: &WebHost, problem: Option<String>) -> Response {
     if host.sessions().folder().admin_code().is_none() {
-        let text = "This host has no code for this page. Set one with `novamind host code`, then reload this page.";
+        let text =
+            "This host has no code for this page. Set one with `novamind host code`, then reload this page.";
         return (StatusCode::NOT_FOUND, message_page("No code", text)).into_response();
     }
     let status = if problem.is_some() { StatusCode::FORBIDDEN } else { StatusCode::OK };
@@ -140,7 +141,10 @@ async fn sign_in(
     let is_right = tokio::task::spawn_blocking(check).await.unwrap_or(false);
     if !is_right {
         host.sessions().record(&AuditEvent::WrongAdminCode { address: address.to_string() });
-        return sign_in_page(&host, Some("The code is wrong. Each further attempt has to wait longer.".to_owned()));
+        return sign_in_page(
+            &host,
+            Some("The code is wrong. Each further attempt has to wait longer.".to_owned()),
+        );
     }
     attempts.record_success(address);
     host.sessions().record(&AuditEvent::AdminSignedIn { address: address.to_string() });
@@ -186,7 +190,12 @@ async fn session_page(State(host): State<WebHost>, head: HeaderMap, Path(label):
     show_session(&host, &label, &form_token, None).await
 }
 
-async fn show_session(host: &WebHost, label: &str, form_token: &str, outcome: Option<Result<&str, String>>) -> Response {
+async fn show_session(
+    host: &WebHost,
+    label: &str,
+    form_token: &str,
+    outcome: Option<Result<&str, String>>,
+) -> Response {
     let Some(row) = session_rows(host).await.into_iter().find(|row| row.label == label) else {
         let page = message_page("Unknown label", "This label is not in the study.");
         return (StatusCode::NOT_FOUND, page).into_response();
@@ -321,7 +330,9 @@ async fn session_rows(host: &WebHost) -> Vec<SessionRow> {
 
 fn latest_run(study: &novamind_study::Study, runs: &std::path::Path) -> Option<RunProgress> {
     let status = session_statuses(study, runs).into_iter().min_by(|one, other| {
-        (one.practice, one.quiet_seconds).partial_cmp(&(other.practice, other.quiet_seconds)).unwrap_or(std::cmp::Ordering::Equal)
+        (one.practice, one.quiet_seconds)
+            .partial_cmp(&(other.practice, other.quiet_seconds))
+            .unwrap_or(std::cmp::Ordering::Equal)
     })?;
     let seconds = |seconds: f64| Duration::try_from_secs_f64(seconds).unwrap_or_default();
     Some(RunProgress {

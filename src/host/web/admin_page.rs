@@ -50,7 +50,8 @@ pub(super) fn overview(study: &str, rows: &[SessionRow], form_token: &str) -> Ht
 fn table_row(row: &SessionRow) -> String {
     let label = escape(&row.label);
     let (class, state) = describe_state(row);
-    let ago = |time: Option<Duration>| time.map_or(String::new(), |time| format!("{} ago", format_time(time)));
+    let ago =
+        |time: Option<Duration>| time.map_or(String::new(), |time| format!("{} ago", format_time(time)));
     let run = row.run.as_ref();
     let week = run.map_or(String::new(), |run| format!("{} of {}", run.week, run.weeks));
     format!(
@@ -91,7 +92,11 @@ fn describe_run(run: &RunProgress) -> &'static str {
 }
 
 /// Returns the page of one session with its actions.
-pub(super) fn session(row: &SessionRow, form_token: &str, outcome: Option<Result<&str, String>>) -> Html<String> {
+pub(super) fn session(
+    row: &SessionRow,
+    form_token: &str,
+    outcome: Option<Result<&str, String>>,
+) -> Html<String> {
     let label = escape(&row.label);
     let outcome = match outcome {
         None => String::new(),
@@ -125,7 +130,10 @@ pub(super) fn session(row: &SessionRow, form_token: &str, outcome: Option<Result
             form("resume", "", "Resume the session")
         ),
         SessionState::Ended(reason) => {
-            format!("<section><h2>Ended</h2><p>The session was ended with this reason: {}</p></section>", escape(reason))
+            format!(
+                "<section><h2>Ended</h2><p>The session was ended with this reason: {}</p></section>",
+                escape(reason)
+            )
         }
     };
     let (class, state) = describe_state(row);

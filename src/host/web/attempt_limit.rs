@@ -33,7 +33,8 @@ impl AttemptLimit {
 
     /// Returns the time that an address has to wait before its next attempt, or `None` if it may try now.
     pub fn delay(&self, address: IpAddr, now: Instant) -> Option<Duration> {
-        let failures = *self.failures.lock().unwrap_or_else(PoisonError::into_inner).get(&network(address))?;
+        let failures =
+            *self.failures.lock().unwrap_or_else(PoisonError::into_inner).get(&network(address))?;
         let doublings = failures.count.checked_sub(self.free_failures + 1)?;
         let delay = MAX_DELAY.min(Duration::from_secs(1 << doublings.min(6)));
         delay.checked_sub(now.duration_since(failures.last)).filter(|left| !left.is_zero())
@@ -46,7 +47,8 @@ impl AttemptLimit {
             failures.retain(|_, failures| now.duration_since(failures.last) < FORGET_AFTER);
         }
         if failures.len() >= MAX_ADDRESSES {
-            let oldest = failures.iter().min_by_key(|(_, failures)| failures.last).map(|(address, _)| *address);
+            let oldest =
+                failures.iter().min_by_key(|(_, failures)| failures.last).map(|(address, _)| *address);
             oldest.map(|address| failures.remove(&address));
         }
         let failures = failures.entry(network(address)).or_insert(Failures { count: 0, last: now });

@@ -9,8 +9,8 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{Html, IntoResponse, Response};
 
 use super::WebHost;
-use crate::audit::AuditEvent;
 use super::request_guard::{CheckedRequest, PARTICIPANT_COOKIE, cookie, set_cookie};
+use crate::audit::AuditEvent;
 
 /// Answers a link with a token: stores the token in a cookie and opens the terminal, so that the token leaves the address.
 ///
@@ -28,7 +28,8 @@ pub(super) async fn open_link(
             let text = "Too many wrong links were opened from this network. Wait a minute, then open your link again.";
             let page = message_page("Too many attempts", text);
             let seconds = delay.as_secs() + 1;
-            return (StatusCode::TOO_MANY_REQUESTS, [(RETRY_AFTER, seconds.to_string())], page).into_response();
+            return (StatusCode::TOO_MANY_REQUESTS, [(RETRY_AFTER, seconds.to_string())], page)
+                .into_response();
         }
         host.wrong_tokens().record_failure(request.client, now);
         host.sessions().record(&AuditEvent::WrongToken { address: request.client.to_string() });

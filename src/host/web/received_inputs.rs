@@ -26,7 +26,8 @@ impl ReceivedInputs {
     pub fn begin(&self, label: &str, client: &str, process: u64, resume: bool) -> (u64, bool) {
         let mut all = self.lock();
         let pages = all.entry(label.to_owned()).or_default();
-        let known = pages.iter().position(|page| page.client == client).map(|position| pages.remove(position));
+        let known =
+            pages.iter().position(|page| page.client == client).map(|position| pages.remove(position));
         let number = known.as_ref().map_or(0, |page| page.number);
         let continues = known.as_ref().map_or(!resume, |page| page.process == process);
         if pages.len() == MAX_PAGES {

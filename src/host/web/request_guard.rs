@@ -107,7 +107,8 @@ impl RequestGuard {
             return self.bound.ip().is_loopback() || self.bound.ip().is_unspecified();
         }
         let Ok(address) = host.parse::<SocketAddr>() else { return false };
-        address.port() == self.bound.port() && (self.bound.ip().is_unspecified() || address.ip() == self.bound.ip())
+        address.port() == self.bound.port()
+            && (self.bound.ip().is_unspecified() || address.ip() == self.bound.ip())
     }
 }
 
@@ -148,7 +149,11 @@ mod tests {
         }
     }
 
-    fn check(guard: &RequestGuard, peer: &str, head: &[(&str, &str)]) -> Result<CheckedRequest, &'static str> {
+    fn check(
+        guard: &RequestGuard,
+        peer: &str,
+        head: &[(&str, &str)],
+    ) -> Result<CheckedRequest, &'static str> {
         let mut headers = HeaderMap::new();
         for (name, value) in head {
             let name: axum::http::HeaderName = name.parse().expect("a name");
@@ -163,7 +168,14 @@ mod tests {
         for host in ["127.0.0.1:7420", "localhost:7420", "LOCALHOST:7420"] {
             assert!(check(&local, PEER, &[("host", host)]).is_ok(), "{host}");
         }
-        for host in ["", "evil.example:7420", "127.0.0.1", "127.0.0.1:80", "192.0.2.1:7420", "localhost.evil.example:7420"] {
+        for host in [
+            "",
+            "evil.example:7420",
+            "127.0.0.1",
+            "127.0.0.1:80",
+            "192.0.2.1:7420",
+            "localhost.evil.example:7420",
+        ] {
             assert!(check(&local, PEER, &[("host", host)]).is_err(), "{host}");
         }
         assert!(check(&local, PEER, &[]).is_err());
@@ -182,12 +194,21 @@ mod tests {
         let public = guard("127.0.0.1:7420", Some("https://play.example.org"));
         let host = ("host", "play.example.org");
         assert!(check(&public, PROXY, &[host, ("origin", "https://play.example.org")]).is_ok());
-        for origin in ["null", "http://play.example.org", "https://play.example.org.evil.example", "https://evil.example", ""] {
+        for origin in [
+            "null",
+            "http://play.example.org",
+            "https://play.example.org.evil.example",
+            "https://evil.example",
+            "",
+        ] {
             assert!(check(&public, PROXY, &[host, ("origin", origin)]).is_err(), "{origin}");
         }
         let mut head = HeaderMap::new();
         head.append(HOST, "play.example.org".parse().expect("a value"));
-        assert!(public.check(&head, PEER.parse().expect("an address"), true).is_err(), "an origin is missing");
+        assert!(
+            public.check(&head, PEER.parse().expect("an address"), true).is_err(),
+            "an origin is missing"
+        );
     }
 
     #[test]
@@ -220,8 +241,12 @@ mod tests {
 
     #[test]
     fn public_addresses_have_a_protocol_and_a_name() {
-        assert_eq!(PublicAddress::parse("https://Play.Example.org/").map(|a| a.authority).as_deref(), Ok("play.example.org"));
-        for text in ["play.example.org", "ftp://x", "https://", "https://a/b", "https://a b", "https://a\"b"] {
+        assert_eq!(
+            PublicAddress::parse("https://Play.Example.org/").map(|a| a.authority).as_deref(),
+            Ok("play.example.org")
+        );
+        for text in ["play.example.org", "ftp://x", "https://", "https://a/b", "https://a b", "https://a\"b"]
+        {
             assert!(PublicAddress::parse(text).is_err(), "{text}");
         }
     }

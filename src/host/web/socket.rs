@@ -89,7 +89,8 @@ async fn attach(
     if label != hello.label {
         return Err(signed_out());
     }
-    let has_client = host.sessions().statuses().iter().any(|status| status.label == label && status.client.is_some());
+    let has_client =
+        host.sessions().statuses().iter().any(|status| status.label == label && status.client.is_some());
     if hello.resume && has_client && !host.inputs().is_latest_client(&label, &hello.client) {
         return Err(closed_message(&CloseReason::TakenOver));
     }
@@ -147,7 +148,15 @@ struct Disconnected;
 
 impl Connection {
     fn new(socket: WebSocket, host: WebHost, hello: Hello, attachment: Attachment) -> Connection {
-        Connection { socket, host, hello, attachment, sent_bytes: 0, displayed_bytes: 0, last_message: Instant::now() }
+        Connection {
+            socket,
+            host,
+            hello,
+            attachment,
+            sent_bytes: 0,
+            displayed_bytes: 0,
+            last_message: Instant::now(),
+        }
     }
 
     async fn run(mut self) {

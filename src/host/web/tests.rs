@@ -39,7 +39,11 @@ impl Answer {
     /// Returns the value of a header, or an empty text.
     fn header(&self, name: &str) -> &str {
         let lines = self.head.lines().filter_map(|line| line.split_once(": "));
-        lines.filter(|(found, _)| found.eq_ignore_ascii_case(name)).map(|(_, value)| value).next().unwrap_or_default()
+        lines
+            .filter(|(found, _)| found.eq_ignore_ascii_case(name))
+            .map(|(_, value)| value)
+            .next()
+            .unwrap_or_default()
     }
 
     fn cookie(&self) -> String {
@@ -65,7 +69,8 @@ fn with_web(test: impl AsyncFnOnce(&mut Web)) {
 impl Web {
     async fn request(&self, method: &str, path: &str, head: &[(&str, &str)], body: &str) -> Answer {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).await.expect("connected");
-        let mut text = format!("{method} {path} HTTP/1.1\r\nConnection: close\r\nContent-Length: {}\r\n", body.len());
+        let mut text =
+            format!("{method} {path} HTTP/1.1\r\nConnection: close\r\nContent-Length: {}\r\n", body.len());
         if !head.iter().any(|(name, _)| *name == "Host") {
             text += &format!("Host: 127.0.0.1:{}\r\n", self.port);
         }
@@ -254,7 +259,10 @@ fn assets_are_compressed_and_confirmed() {
 fn inputs_sent_again_after_a_reconnect_act_once() {
     with_web(async |web| {
         let mut page = web.open("P01", "a", false).await;
-        assert_eq!(page.read("welcome").await, json!({"type": "welcome", "acknowledged": 0, "continues": true}));
+        assert_eq!(
+            page.read("welcome").await,
+            json!({"type": "welcome", "acknowledged": 0, "continues": true})
+        );
         page.read_output("ready P01 24 80").await;
         page.input(1, "one\n").await;
         assert_eq!(page.read("acknowledged").await["number"], 1);
@@ -263,7 +271,10 @@ fn inputs_sent_again_after_a_reconnect_act_once() {
         drop(page);
         // The acknowledgement of 2 was lost, so the page sends 2 again, and 3 for the first time.
         let mut page = web.open("P01", "a", true).await;
-        assert_eq!(page.read("welcome").await, json!({"type": "welcome", "acknowledged": 2, "continues": true}));
+        assert_eq!(
+            page.read("welcome").await,
+            json!({"type": "welcome", "acknowledged": 2, "continues": true})
+        );
         page.input(2, "two\n").await;
         page.input(3, "three\n").await;
         page.read_output("got three").await;
@@ -327,7 +338,11 @@ fn output_waits_until_the_page_has_displayed_it() {
 fn admin_code_is_checked_with_a_growing_delay() {
     with_web(async |web| {
         let page = web.get("/admin", "").await;
-        assert!(page.status == 200 && page.body.contains("Code of the experimenter") && !page.body.contains("P01"));
+        assert!(
+            page.status == 200
+                && page.body.contains("Code of the experimenter")
+                && !page.body.contains("P01")
+        );
         assert_eq!(web.get("/admin/session/P01", "").await.status, 303);
         for _ in 0..3 {
             assert_eq!(web.post("/admin/sign-in", "", "code=wrong").await.status, 403);
@@ -344,7 +359,9 @@ fn admin_actions_need_the_form_token_and_are_recorded() {
         let (cookie, token) = web.sign_in().await;
         assert!(web.get("/admin", &cookie).await.body.contains("/admin/session/P02"));
         let pause = |token: &str| format!("form_token={token}&action=pause");
-        for (cookie, token, status) in [("", token.as_str(), 303), (&cookie, "", 403), (&cookie, "wrong", 403)] {
+        for (cookie, token, status) in
+            [("", token.as_str(), 303), (&cookie, "", 403), (&cookie, "wrong", 403)]
+        {
             assert_eq!(web.post("/admin/session/P01", cookie, &pause(token)).await.status, status);
         }
         assert_eq!(web.sessions.state("P01"), SessionState::Open);
@@ -366,7 +383,10 @@ fn admin_actions_need_the_form_token_and_are_recorded() {
         assert_eq!(web.post("/admin/session/P01", &cookie, &end("")).await.status, 409);
         assert_eq!(web.post("/admin/session/P01", &cookie, &end("ill")).await.status, 200);
         let closed = web.open("P01", "a", false).await.read("closed").await;
-        assert!(closed["reason"] == "finished" && closed["text"].as_str().is_some_and(|text| text.ends_with(": ill")));
+        assert!(
+            closed["reason"] == "finished"
+                && closed["text"].as_str().is_some_and(|text| text.ends_with(": ill"))
+        );
         let log = web.audit_log();
         let actions = ["message", "pause", "resume", "end"].map(|action| format!(r#""action":"{action}""#));
         assert!(actions.iter().all(|action| log.matches(action).count() == 1), "{log}");

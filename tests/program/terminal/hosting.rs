@@ -32,7 +32,8 @@ fn text(path: &Path) -> String {
 
 /// Runs the program, which has to succeed. Returns its output.
 fn program(arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_novamind")).args(arguments).output().expect("the program runs");
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_novamind")).args(arguments).output().expect("the program runs");
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("text")
 }
@@ -63,7 +64,8 @@ impl Host {
     /// Returns the process of a session.
     fn session_process(&self, label: &str) -> String {
         let parent = self.process.id().to_string();
-        let listed = Command::new("ps").args(["-o", "pid=,args=", "--ppid", &parent]).output().expect("ps runs");
+        let listed =
+            Command::new("ps").args(["-o", "pid=,args=", "--ppid", &parent]).output().expect("ps runs");
         let listed = String::from_utf8(listed.stdout).expect("text");
         let line = listed.lines().find(|line| line.contains(&format!(" {label} ")));
         let line = line.unwrap_or_else(|| panic!("no session of {label} in:\n{listed}"));
@@ -120,9 +122,10 @@ fn participant_plays_through_kills_of_the_session_and_the_host() {
     let session = host.session_process("P01");
     host.signal("-KILL");
     let (code, screen) = terminal.wait_for_end();
-    assert!(code == 1 && screen.contains("connect again"), "{code}: {screen}");
+    assert!(code == 1 && screen.contains("the connection to the host failed"), "{code}: {screen}");
     // The kernel closes the terminal of the session, which then saves.
-    wait_until("the end of the session", || !Path::new(&format!("/proc/{session}")).exists());
+    let command_line = format!("/proc/{session}/cmdline");
+    wait_until("the end of the session", || !std::fs::read(&command_line).is_ok_and(|line| !line.is_empty()));
     drop(host);
     let host = Host::start(&study);
     let mut terminal = host.attach("P01", (80, 24));

@@ -61,7 +61,8 @@ fn check_questionnaires(study: &Study, weeks: u32) -> Option<CheckItem> {
 /// Reports a last block of the assignment that does not contain every cell of the design.
 fn check_last_block(study: &Study) -> Option<String> {
     let (places, cells) = (study.assignment.as_ref()?.rows.len(), study.protocol.seeds.cell_count());
-    let has_blocks = matches!(study.protocol.seeds.plan, SeedPlan::Secret) || !study.protocol.seeds.block.is_empty();
+    let has_blocks =
+        matches!(study.protocol.seeds.plan, SeedPlan::Secret) || !study.protocol.seeds.block.is_empty();
     (has_blocks && !places.is_multiple_of(cells)).then(|| {
         format!(
             "{places} labels in blocks of {cells}: the last block has {} of {cells} cells",

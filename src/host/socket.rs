@@ -112,10 +112,18 @@ impl Drop for HostSocket {
 
 impl SocketHost {
     async fn serve_client(&self, mut stream: UnixStream) -> io::Result<()> {
-        let account = Account::of_uid(stream.peer_cred()?.uid()).await;
+        let peer = stream.peer_cred()?;
+        let account = Account::of_uid(peer.uid()).await;
         let hello = timeout(HELLO_TIMEOUT, receive(&mut stream)).await?;
         let ClientMessage::Hello { label, columns, rows } = hello? else { return Ok(()) };
         let client = ClientKind::Terminal(account.name.clone());
+        if self.permission(&account) == Permission::All && is_restricted(peer.pid()) {
+            let reason = "restricted processes, such as sessions, cannot attach to sessions".to_owned();
+            let label = label.unwrap_or_default().chars().take(40).collect();
+            let client = client.to_string();
+            self.sessions.record(&AuditEvent::AttachRefused { label, client, reason: reason.clone() });
+            return send(&mut stream, &HostMessage::Refused(reason)).await;
+        }
         let label = match self.permitted_label(&account, label, &mut stream).await? {
             Ok(label) => label,
             Err((label, reason)) => {
@@ -199,6 +207,21 @@ impl Account {
         let name = name.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
         Account { uid, name: name.filter(|name| !name.is_empty()).unwrap_or_else(|| format!("#{uid}")) }
     }
+}
+
+/// Returns whether a process may be a session that a participant controls. Sessions have the account of the host, and
+/// cannot remove the flag that Landlock requires. A process that has ended counts as restricted.
+#[cfg(target_os = "linux")]
+fn is_restricted(process: Option<i32>) -> bool {
+    let status = process.and_then(|id| std::fs::read_to_string(format!("/proc/{id}/status")).ok());
+    let is_free = |line: &str| line.split_whitespace().eq(["NoNewPrivs:", "0"]);
+    !status.is_some_and(|status| status.lines().any(is_free))
+}
+
+/// Returns whether a process may be a session that a participant controls. Only Linux restricts sessions.
+#[cfg(not(target_os = "linux"))]
+fn is_restricted(_process: Option<i32>) -> bool {
+    false
 }
 
 /// Passes messages between a client and its session until one of them ends.

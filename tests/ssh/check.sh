@@ -173,6 +173,9 @@ run_as() { setpriv --reuid "$1" --regid "$1" --clear-groups "${@:2}"; }
 run_as nmtest-01 /usr/bin/python3 "$work/socket.py" "$work/run/host.sock" > "$work/out" 2>&1
 shows "the socket refuses another label" "can open only the session"
 hides "the socket attaches no other label" "Attached"
+setpriv --no-new-privs /usr/bin/python3 "$work/socket.py" "$work/run/host.sock" > "$work/out" 2>&1
+shows "a restricted process with the account of the host is refused" "restricted processes"
+hides "a restricted process attaches to no session" "Attached"
 run_as nmtest-01 sh -c "cat $work/pilot/assignment.csv $work/pilot/host/host.toml $work/pilot/host/sessions/*/study/* ; ls -R $work/pilot/host/" > "$work/out" 2>&1
 hides "an account reads no file of the host" "digest"
 run_as nmtest-01 sh -c "cat $work/pilot/host/access.json; tr '\0' '\n' < /proc/$host_process/environ; kill $host_process; kill -9 $host_process" > "$work/out" 2>&1

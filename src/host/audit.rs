@@ -21,7 +21,10 @@ const MAX_LINE_BYTES: usize = 16 << 10;
 
 /// The audit log of a host folder. Several processes can append to it.
 #[derive(Debug, Clone)]
-pub struct AuditLog(Arc<PathBuf>);
+pub struct AuditLog {
+    path: Arc<PathBuf>,
+    report: fn(&str),
+}
 
 /// An event of the audit log.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -124,9 +127,16 @@ struct ChainedLine {
 }
 
 impl AuditLog {
-    /// Returns the audit log of a host folder.
-    pub fn of_folder(host_folder: &Path) -> AuditLog {
-        AuditLog(Arc::new(host_folder.join(AUDIT_FILE)))
+    /// Returns the audit log of a host folder. `report` is called with a message if [`AuditLog::record`] fails.
+    pub(crate) fn of_folder(host_folder: &Path, report: fn(&str)) -> AuditLog {
+        AuditLog { path: Arc::new(host_folder.join(AUDIT_FILE)), report }
+    }
+
+    /// Appends an event. A failure is reported, and the caller continues.
+    pub fn record(&self, event: &AuditEvent) {
+        if let Err(error) = self.append(event) {
+            (self.report)(&format!("the audit log was not written: {error}"));
+        }
     }
 
     /// Appends an event and syncs the file.
@@ -134,12 +144,12 @@ impl AuditLog {
     /// # Errors
     /// The file cannot be read or written.
     pub fn append(&self, event: &AuditEvent) -> Result<(), RunError> {
-        let path = self.0.as_path();
+        let path = self.path.as_path();
         self.append_locked(event).map_err(RunError::io(path))
     }
 
     fn append_locked(&self, event: &AuditEvent) -> std::io::Result<()> {
-        let mut file = open_regular_file_for_append(&self.0)?;
+        let mut file = open_regular_file_for_append(&self.path)?;
         file.lock()?;
         let end = read_end(&mut file)?;
         let ends_with_line = end.is_empty() || end.ends_with(b"\n");
@@ -201,7 +211,7 @@ mod tests {
     #[test]
     fn chain_detects_changed_and_removed_lines() {
         let folder = tempfile::tempdir().expect("a folder");
-        let log = AuditLog::of_folder(folder.path());
+        let log = AuditLog::of_folder(folder.path(), |problem| panic!("{problem}"));
         for address in ["192.0.2.1", "192.0.2.2", "192.0.2.3"] {
             log.append(&AuditEvent::WrongToken { address: address.to_owned() }).expect("appended");
         }
@@ -216,7 +226,7 @@ mod tests {
     #[test]
     fn line_cut_by_a_crash_is_kept_and_reported() {
         let folder = tempfile::tempdir().expect("a folder");
-        let log = AuditLog::of_folder(folder.path());
+        let log = AuditLog::of_folder(folder.path(), |problem| panic!("{problem}"));
         log.append(&AuditEvent::HostStopped).expect("appended");
         let path = folder.path().join(AUDIT_FILE);
         let mut text = std::fs::read_to_string(&path).expect("a file");

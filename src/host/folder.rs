@@ -33,6 +33,8 @@ pub struct HostFolder {
     rows: Vec<AssignmentRow>,
     url: Option<String>,
     admin_code: Option<CodeDigest>,
+    /// Function that reports failures of the audit log to the experimenter.
+    report: fn(&str),
 }
 
 /// The version of a program that plays sessions.
@@ -76,7 +78,8 @@ impl HostFolder {
             ))
         })?;
         let path = study.folder.join(HOST_FOLDER);
-        let mut folder = HostFolder { path, study, rows: assignment.rows, url: None, admin_code: None };
+        let mut folder =
+            HostFolder { path, study, rows: assignment.rows, url: None, admin_code: None, report: |_| {} };
         create_private_folder(&folder.path)?;
         create_private_folder(&folder.path.join(SESSIONS_FOLDER))?;
         folder.check_description(program)?;
@@ -169,9 +172,14 @@ impl HostFolder {
         Access::of_folder(&self.path)
     }
 
+    /// Sets the function that reports failures of the audit log to the experimenter.
+    pub fn report_failures(&mut self, report: fn(&str)) {
+        self.report = report;
+    }
+
     /// Returns the audit log.
     pub fn audit(&self) -> AuditLog {
-        AuditLog::of_folder(&self.path)
+        AuditLog::of_folder(&self.path, self.report)
     }
 
     /// Returns the path of the socket if no other path is given.

@@ -350,9 +350,7 @@ impl HostedSession {
 
     /// Appends an event to the audit log. A session continues if the log cannot be written; attaching does not.
     fn record(&self, event: &AuditEvent) {
-        if let Err(error) = self.audit.append(event) {
-            eprintln!("novamind host: the audit log was not written: {error}");
-        }
+        self.audit.record(event);
     }
 
     pub fn activity(&self) -> Activity {

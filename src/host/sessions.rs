@@ -134,11 +134,9 @@ impl Sessions {
         &self.0.audit
     }
 
-    /// Appends an event to the audit log. A failure is printed.
+    /// Appends an event to the audit log. A failure is reported, and the host continues.
     pub fn record(&self, event: &AuditEvent) {
-        if let Err(error) = self.0.audit.append(event) {
-            eprintln!("novamind host: the audit log was not written: {error}");
-        }
+        self.0.audit.record(event);
     }
 
     /// Attaches a client to a session. An earlier client of the session is disconnected. Starts the process of the session

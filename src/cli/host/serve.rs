@@ -34,7 +34,8 @@ pub struct ServeOptions {
 pub fn run(options: &ServeOptions, study: Option<&Path>) -> Result<(), Failure> {
     let study =
         study.ok_or_else(|| Failure::usage("give the folder of the study: novamind host --study DIR"))?;
-    let folder = open_folder(study)?;
+    let mut folder = open_folder(study)?;
+    folder.report_failures(|problem| eprintln!("novamind: {problem}"));
     // Processes of sessions have another working folder.
     let socket = options.socket.clone().unwrap_or_else(|| folder.default_socket());
     let is_sandboxed = check_sandbox(options)?;

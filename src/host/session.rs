@@ -241,9 +241,6 @@ impl HostedSession {
         // The state is locked first, as in `receive_output`, so that the screen and the bytes after it fit together.
         let state = self.lock();
         let mut pending = queue.lock();
-        if let Some(notice) = pending.notices.pop_front() {
-            return Some(Output::Notice(notice));
-        }
         let is_current = state.client.as_ref().is_some_and(|client| std::ptr::eq(&**client, queue));
         if pending.needs_screen && is_current {
             pending.needs_screen = false;
@@ -254,6 +251,9 @@ impl HostedSession {
                 bytes.extend_from_slice(REPORT_FOCUS);
             }
             return Some(Output::Bytes(bytes));
+        }
+        if let Some(notice) = pending.notices.pop_front() {
+            return Some(Output::Notice(notice));
         }
         if !pending.bytes.is_empty() {
             return Some(Output::Bytes(std::mem::take(&mut pending.bytes)));

@@ -155,6 +155,9 @@ async fn check_request(
     next: Next,
 ) -> Response {
     let is_reading = matches!(*request.method(), Method::GET | Method::HEAD);
+    // The address of a link must not leave the page. Forms need a policy with which browsers send their origin.
+    let is_admin_page = request.uri().path().starts_with("/admin");
+    let referrer_policy = if is_admin_page { "same-origin" } else { "no-referrer" };
     let needs_origin = !is_reading || request.headers().contains_key(UPGRADE);
     let mut response = match host.0.guard.check(request.headers(), peer, needs_origin) {
         Ok(checked) => {
@@ -172,7 +175,7 @@ async fn check_request(
         CONTENT_SECURITY_POLICY,
         "default-src 'none'; style-src 'self'; img-src data:; form-action 'self'; base-uri 'none'; frame-ancestors 'none'",
     );
-    set_default(REFERRER_POLICY, "no-referrer");
+    set_default(REFERRER_POLICY, referrer_policy);
     set_default(X_CONTENT_TYPE_OPTIONS, "nosniff");
     set_default(X_FRAME_OPTIONS, "DENY");
     set_default(CACHE_CONTROL, "no-store");

@@ -343,6 +343,8 @@ fn admin_code_is_checked_with_a_growing_delay() {
                 && page.body.contains("Code of the experimenter")
                 && !page.body.contains("P01")
         );
+        // With `no-referrer`, browsers send the origin `null` with forms.
+        assert_eq!(page.header("referrer-policy"), "same-origin");
         assert_eq!(web.get("/admin/session/P01", "").await.status, 303);
         for _ in 0..3 {
             assert_eq!(web.post("/admin/sign-in", "", "code=wrong").await.status, 403);

@@ -25,7 +25,7 @@ import websockets
 
 WEEK_KEYS = ["n", "\r", "load", "\r", "f", "\r"]
 ACTION_SECONDS, WEEK_SECONDS = 2, 120
-STUDY = 'name = "load"\ntitle = "A company"\n[seeds]\nplan = "secret"\ncount = 5\n[practice]\noffer = "none"\n'
+STUDY = 'name = "load"\ntitle = "A company"\n[seeds]\nplan = "secret"\ncount = 1\n[practice]\noffer = "none"\n'
 
 
 class Client:
@@ -76,10 +76,11 @@ class Client:
     async def start(self):
         """Agrees to the consent text and starts the session."""
         for _ in range(40):
-            if "wk 0/" in re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", self.text):
+            if re.search("SESSION|Action needed", re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", self.text)):
                 return
             for key in ["\x1b[F", "y", "\r"]:
                 await self.press(key, counts=False)
+                await asyncio.sleep(0.3)
         raise SystemExit(f"{self.label}: the session does not start")
 
     async def week(self):

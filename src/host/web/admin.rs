@@ -166,21 +166,23 @@ struct SignOutForm {
 }
 
 async fn sign_out(State(host): State<WebHost>, head: HeaderMap, Form(form): Form<SignOutForm>) -> Response {
-    if let Err(refused) = check_form(&host, &head, &form.form_token) {
+    if let Some(refused) = form_rejection(&host, &head, &form.form_token) {
         return refused;
     }
     host.admin().sign_out(&head);
     Redirect::to("/admin").into_response()
 }
 
-/// Refuses a form that was not sent from a page of a browser in which the code was entered.
-fn check_form(host: &WebHost, head: &HeaderMap, form_token: &str) -> Result<(), Response> {
-    let expected = host.admin().form_token(head).ok_or_else(|| Redirect::to("/admin").into_response())?;
+/// Returns a rejection if a form was not sent from a page of a browser in which the code was entered.
+fn form_rejection(host: &WebHost, head: &HeaderMap, form_token: &str) -> Option<Response> {
+    let Some(expected) = host.admin().form_token(head) else {
+        return Some(Redirect::to("/admin").into_response());
+    };
     if cookie_digest(&expected) == cookie_digest(form_token) {
-        return Ok(());
+        return None;
     }
     let text = "The form is out of date, and nothing was changed. Open the page again.";
-    Err((StatusCode::FORBIDDEN, message_page("Not changed", text)).into_response())
+    Some((StatusCode::FORBIDDEN, message_page("Not changed", text)).into_response())
 }
 
 async fn session_page(State(host): State<WebHost>, head: HeaderMap, Path(label): Path<String>) -> Response {
@@ -231,7 +233,7 @@ async fn act(
     Path(label): Path<String>,
     Form(form): Form<ActionForm>,
 ) -> Response {
-    if let Err(refused) = check_form(&host, &head, &form.form_token) {
+    if let Some(refused) = form_rejection(&host, &head, &form.form_token) {
         return refused;
     }
     let text = form.text.trim();

@@ -53,7 +53,7 @@
       magenta: "#c792ea",
       cyan: "#3fc1c9",
       white: "#d8dae0",
-      brightBlack: "#8a92a3",
+      brightBlack: "#667080",
       brightRed: "#ff938c",
       brightGreen: "#8fe09b",
       brightYellow: "#f5c866",
@@ -209,9 +209,9 @@
     unacknowledged = [];
     element("connection").hidden = true;
     const buttons = { taken_over: "Continue here", ended: "Open the session again", failed: "Try again" };
-    showDialog(text, buttons[reason]);
-    if (reason === "paused") retryTimer = setTimeout(connect, PAUSED_RETRY_MS);
-    if (reason === "shutdown") retryTimer = setTimeout(connect, MAX_RETRY_MS);
+    const retryAfter = { paused: PAUSED_RETRY_MS, shutdown: MAX_RETRY_MS }[reason];
+    showDialog(retryAfter ? `${text} This window connects again by itself.` : text, buttons[reason]);
+    if (retryAfter) retryTimer = setTimeout(connect, retryAfter);
   }
 
   function showDialog(text, button) {

@@ -38,7 +38,7 @@ pub(super) fn overview(study: &str, rows: &[SessionRow], form_token: &str) -> Ht
 <form method="post" action="/admin/sign-out"><input type="hidden" name="form_token" value="{form_token}"><button>Sign out</button></form></header>
 <p>{connected} of {} connected · {started} started. <span class="note">Updates every {REFRESH_SECONDS} s. Choose a label to send a message, or to pause or end the session.</span></p>
 <div class="scroll"><table>
-<thead><tr><th>Label</th><th>State</th><th>Run</th><th class="number">Week</th><th class="number">Connected for</th><th class="number">Last key</th><th class="number">Last recorded action</th><th class="number">Since start</th><th>Problems</th></tr></thead>
+<thead><tr><th>Label</th><th>State</th><th>Run</th><th class="number">Week</th><th class="number">Connected</th><th class="number">Last key</th><th class="number">Last action</th><th class="number">Since start</th><th>Problems</th></tr></thead>
 <tbody>
 {lines}</tbody></table></div>"#,
         rows.len()

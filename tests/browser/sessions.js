@@ -107,13 +107,6 @@ async function start(page) {
   assert.fail(`the session does not start:\n${await screenText(page)}`);
 }
 
-/** Continues a session whose program was started again. */
-async function continueSession(page) {
-  await shows(page, "continues where you left off");
-  await press(page, "Enter");
-  await shows(page, /wk 2\//);
-}
-
 async function playWeek(page, week) {
   await press(page, "n", "Enter");
   await page.keyboard.type("played in a browser");
@@ -200,7 +193,7 @@ async function main() {
       await stopHost(host);
       host = await startHost();
       await page.locator("#dialog").waitFor({ state: "hidden", timeout: WAIT_MS });
-      await continueSession(page);
+      await shows(page, /wk 2\//);
     });
     await check("a second tab takes over, and the first can continue", async () => {
       const second = await openPage(context, address);
@@ -231,7 +224,7 @@ async function main() {
       await page.screenshot({ path: path.join(SCREENSHOTS, "paused.png") });
       await admin.getByRole("button", { name: "Resume the session" }).click();
       await page.locator("#dialog").waitFor({ state: "hidden", timeout: WAIT_MS });
-      await continueSession(page);
+      await shows(page, /wk 2\//);
     });
     await check("screenshots at three sizes", async () => {
       const sizes = {

@@ -263,7 +263,7 @@ mod tests {
         create_folders(session.path());
         let own = session.path().to_owned();
         write(own.join("runs/run.toml"), "seed = 7").expect("written");
-        in_session(&session.path().to_owned(), move || {
+        in_session(session.path(), move || {
             let script = own.join("tmp/script");
             let (folder, run) = (script.clone(), own.join("runs/run.toml"));
             let restricted = std::thread::spawn(move || {

@@ -151,7 +151,7 @@ hides "a wrong code opens no session" "Running a company"
 shows "label and code open the session" "Running a company"
 
 # The socket, without ssh, as an account with a shell.
-cat > "$work/socket.py" <<'END'
+cat > "$work/client.py" <<'END'
 import json, socket, struct, sys
 def ask(message):
     connection = socket.socket(socket.AF_UNIX)
@@ -168,12 +168,12 @@ for message in [hello("nmtest-02"), hello("../nmtest-02"), hello("nmtest-01\0"),
                 b"\xff\xff\xff\xff", b"GET / HTTP/1.1\r\n\r\n", struct.pack(">I", 9) + b"[[[[[[[[["]:
     print(message, ask(message)[4:200])
 END
-chmod 644 "$work/socket.py"
+chmod 644 "$work/client.py"
 run_as() { setpriv --reuid "$1" --regid "$1" --clear-groups "${@:2}"; }
-run_as nmtest-01 /usr/bin/python3 "$work/socket.py" "$work/run/host.sock" > "$work/out" 2>&1
+run_as nmtest-01 /usr/bin/python3 "$work/client.py" "$work/run/host.sock" > "$work/out" 2>&1
 shows "the socket refuses another label" "can open only the session"
 hides "the socket attaches no other label" "Attached"
-setpriv --no-new-privs /usr/bin/python3 "$work/socket.py" "$work/run/host.sock" > "$work/out" 2>&1
+setpriv --no-new-privs /usr/bin/python3 "$work/client.py" "$work/run/host.sock" > "$work/out" 2>&1
 shows "a restricted process with the account of the host is refused" "restricted processes"
 hides "a restricted process attaches to no session" "Attached"
 run_as nmtest-01 sh -c "cat $work/pilot/assignment.csv $work/pilot/host/host.toml $work/pilot/host/sessions/*/study/* ; ls -R $work/pilot/host/" > "$work/out" 2>&1

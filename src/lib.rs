@@ -46,6 +46,9 @@ pub use novamind_course as course;
 pub use novamind_database as database;
 #[doc(inline)]
 pub use novamind_glossary as glossary;
+#[cfg(all(feature = "server", unix))]
+#[doc(inline)]
+pub use novamind_host as host;
 #[doc(inline)]
 pub use novamind_insight as insight;
 #[doc(inline)]

@@ -7,6 +7,8 @@ mod class;
 mod completions;
 mod doctor;
 mod failure;
+#[cfg(all(feature = "server", unix))]
+mod host;
 mod keys;
 mod lab;
 mod lesson;
@@ -45,7 +47,7 @@ use crate::record::folder::manifest_check::read_manifest;
 use crate::record::folder::runs::participant_folder;
 use crate::record::trajectory::Trajectory;
 use crate::session::{LabKey, ModelSettings, SealKey, record_external_read};
-use novamind_study::{STUDY_FILE, Study, load_lab_key, load_seal_key, record_rejected_code};
+use novamind_study::{CodeOutcome, STUDY_FILE, Study, load_lab_key, load_seal_key};
 
 /// Run a simulated AI subscription company for 500 days
 ///
@@ -112,6 +114,9 @@ enum Command {
     /// Serve a run to a client of the Model Context Protocol on standard input and output
     #[cfg(feature = "server")]
     Mcp(mcp::Options),
+    /// Host sessions of a study on this machine: participants play in a browser or over ssh
+    #[cfg(all(feature = "server", unix))]
+    Host(host::Options),
     /// Measure how fast this machine simulates
     Bench(bench::Options),
     /// Check this machine and print what a bug report needs
@@ -146,6 +151,8 @@ impl Command {
             Command::Serve(_) => "serve",
             #[cfg(feature = "server")]
             Command::Mcp(_) => "mcp",
+            #[cfg(all(feature = "server", unix))]
+            Command::Host(_) => "host",
             Command::Bench(_) => "bench",
             Command::Doctor(_) => "doctor",
             Command::Completions(_) => "completions",
@@ -389,6 +396,11 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     #[cfg(feature = "server")]
     let arguments = pass_code_to_tool(arguments);
     ignore_file_size_signal();
+    // The host reads the files of the study itself, so it does not need the experimenter's code.
+    #[cfg(all(feature = "server", unix))]
+    if let Some(Command::Host(options)) = &arguments.command {
+        return host::run(options, arguments.study.as_deref());
+    }
     let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);
     let mut context = Context {
         configuration: Configuration::from_environment(),
@@ -401,10 +413,9 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.study {
         let is_visit = matches!(arguments.command, None | Some(Command::Play(_)));
         let study = Study::load(folder)?;
-        let has_code = study.protocol.accepts_code(arguments.code.as_deref());
-        if let (false, Some(_)) = (has_code, &arguments.code) {
-            record_rejected_code(&study, &context.runs_folder()?);
-        }
+        let check = |code: &String| Ok::<_, Failure>(study.check_code(&context.runs_folder()?, code));
+        let outcome = arguments.code.as_ref().map(check).transpose()?;
+        let has_code = outcome == Some(CodeOutcome::Right);
         if is_visit && !has_code {
             let options = match arguments.command {
                 Some(Command::Play(options)) => options,
@@ -414,7 +425,10 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         }
         context.is_experimenter = has_code;
         if !has_code {
-            return Err(Failure::usage(match arguments.code {
+            return Err(Failure::usage(match outcome {
+                Some(CodeOutcome::Wait(seconds)) => {
+                    return Err(Failure::usage(CodeOutcome::Wait(seconds).describe()));
+                }
                 Some(_) => {
                     "the code is wrong; this command needs the experimenter's code: give --code, or set NOVAMIND_CODE"
                 }
@@ -447,6 +461,8 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Serve(options)) => serve::run(&options, &context),
         #[cfg(feature = "server")]
         Some(Command::Mcp(options)) => mcp::run(&options, &context),
+        #[cfg(all(feature = "server", unix))]
+        Some(Command::Host(options)) => host::run(&options, arguments.study.as_deref()),
         Some(Command::Bench(options)) => bench::run(&options, &context),
         Some(Command::Doctor(options)) => doctor::run(&options, &context),
         Some(Command::Completions(options)) => completions::run(&options),

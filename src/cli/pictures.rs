@@ -83,6 +83,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         runs,
         resume_command: context.resume_command(),
         lists_all_participants: false,
+        hosted: false,
         opponents: play_opponents,
     };
     let places = picture_keys(options, &settings.keys)?;

@@ -13,6 +13,7 @@ use crate::console::effect::Effect;
 use crate::console::keys::KeyBindings;
 use crate::console::themes;
 use crate::lab::play_opponents;
+use crate::plain::Entrance;
 use crate::record::clock::monotonic_time;
 use crate::record::consent::{ConsentDetails, ConsentMeans};
 use crate::record::error::RunError;
@@ -142,10 +143,52 @@ pub fn guide_participant(folder: &Path, options: &Options, context: &Context) ->
     let style = crate::plain::OutputStyle { json: options.json, echo: options.echo, strict: options.strict };
     let base = context.runs_folder()?;
     let again = if options.plain { format!("{again} --plain") } else { again };
-    match crate::plain::run_participant_session(study, &base, &context.configuration, style, &again)? {
-        0 => Ok(()),
-        code => Err(Failure::code_only(code)),
+    let entrance = Entrance::Label(&again);
+    exit_with(crate::plain::run_participant_session(study, &base, &context.configuration, style, entrance)?)
+}
+
+/// Runs the hosted session of a participant in this terminal, from the participant's next step to the end or until the
+/// participant leaves. `folder` is the folder of the session, which contains `study` and `runs`.
+///
+/// Makes `folder` the working folder of the process and uses only relative paths, so that no message contains a path
+/// of the server. Reads no configuration of the user.
+///
+/// # Errors
+/// The folder or the study cannot be read, or the terminal fails. The failure contains the exit code of a session that
+/// did not end normally.
+pub fn run_hosted_session(folder: &Path, label: &str, plain: bool) -> Result<(), Failure> {
+    std::env::set_current_dir(folder)
+        .map_err(|error| Failure::failed(format!("the folder of the session cannot be opened: {error}")))?;
+    let study = Study::load(Path::new("study"))?;
+    let (runs, configuration) = (PathBuf::from("runs"), Configuration::bundled());
+    if plain {
+        let style = crate::plain::OutputStyle::default();
+        let entrance = Entrance::Hosted(label);
+        return exit_with(crate::plain::run_participant_session(
+            study,
+            &runs,
+            &configuration,
+            style,
+            entrance,
+        )?);
     }
+    let settings = Settings {
+        theme: themes::find_theme("dark", &configuration).map_err(Failure::usage)?,
+        keys: KeyBindings::bundled(),
+        glyphs: Glyphs::Braille,
+        configuration,
+        runs,
+        resume_command: String::new(),
+        lists_all_participants: false,
+        hosted: true,
+        opponents: play_opponents,
+    };
+    open_console(settings, Some(Effect::StartHostedSession(Box::new(study), label.to_owned())))
+}
+
+/// Converts the exit code of a session to a result.
+fn exit_with(code: u8) -> Result<(), Failure> {
+    if code == 0 { Ok(()) } else { Err(Failure::code_only(code)) }
 }
 
 fn open_run(options: &Options, context: &Context) -> Result<Session, Failure> {
@@ -197,7 +240,7 @@ fn play_plain(options: &Options, context: &Context) -> Result<(), Failure> {
                 ErrorKind::BrokenPipe => Failure::code_only(1),
                 _ => Failure::failed(error.to_string()),
             })?;
-    if code == 0 { Ok(()) } else { Err(Failure::code_only(code)) }
+    exit_with(code)
 }
 
 fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
@@ -260,12 +303,18 @@ fn show_console_with_resume_command(
         runs: context.runs_folder()?,
         resume_command: again,
         lists_all_participants: context.is_experimenter,
+        hosted: false,
         opponents: play_opponents,
     };
+    open_console(settings, start)
+}
+
+/// Opens the console and prints its farewell.
+fn open_console(settings: Settings, start: Option<Effect>) -> Result<(), Failure> {
     let (code, farewell) = crate::console::run_console(settings, start)
         .map_err(|error| Failure::failed(format!("cannot use the terminal: {error}")))?;
     if let Some(text) = farewell {
         println!("{text}");
     }
-    if code == 0 { Ok(()) } else { Err(Failure::code_only(code)) }
+    exit_with(code)
 }

@@ -40,6 +40,7 @@ use super::context::{EditorDocument, ScreenContext, ScreenId};
 use super::dialogs::Dialog;
 use super::dialogs::next_week::NextWeekDialog;
 use super::effect::Effect;
+use super::hosted::hosted_keys;
 use super::keys::KeyBindings;
 use super::own_commands::{OwnCommands, ProgramCall};
 use super::playback::PlaybackViewer;
@@ -52,7 +53,6 @@ use novamind_record::folder::query_library::QueryLibrary;
 use novamind_report::RunReport;
 use novamind_report::opponents::PlayOpponentsFn;
 use novamind_session::TimeLeft;
-use novamind_study::CodeCheck;
 use novamind_tui::canvas::Click;
 use novamind_tui::chord::Chord;
 use novamind_tui::glyphs::Glyphs;
@@ -99,6 +99,27 @@ pub enum Order {
     Mouse(bool),
     /// Exit, with an exit code and a text to print.
     Exit(u8, Option<String>),
+}
+
+impl Order {
+    /// Returns whether the order is executed in a hosted session. Orders that write files of the user's choice or start
+    /// programs are dropped, whatever requested them.
+    fn is_executed_in_hosted_session(&self) -> bool {
+        match self {
+            Order::Job(Job::SavePreferences(_))
+            | Order::Write(_)
+            | Order::SaveQuery(..)
+            | Order::RunProgram(_)
+            | Order::OpenEditor(_) => false,
+            Order::Job(_)
+            | Order::Ask(..)
+            | Order::CancelQuery
+            | Order::Copy(_)
+            | Order::Redraw
+            | Order::Mouse(_)
+            | Order::Exit(..) => true,
+        }
+    }
 }
 
 /// A status message in the footer.
@@ -207,6 +228,8 @@ pub struct App {
     /// Lines of an own command that are being executed.
     own_lines: own_commands::LineQueue,
     resume_command: String,
+    /// Whether the session runs on a server, for a participant who uses only the screen.
+    pub is_hosted: bool,
     /// The part of the program that the user is in.
     pub stage: Stage,
     /// Dialogs, the topmost last.
@@ -219,8 +242,8 @@ pub struct App {
     typing_log: TypingLog,
     edit_source: EditSource,
     explained_term: Option<String>,
-    /// Check of the experimenter's code, or `None` outside of a study with a code.
-    pub code_check: Option<CodeCheck>,
+    /// Whether the study has an experimenter's code.
+    pub has_code: bool,
     drafts: drafts::DraftState,
     /// The status message in the footer.
     pub status: Option<StatusMessage>,
@@ -257,14 +280,18 @@ impl App {
         let menu = Box::new(StartMenu::new(&settings.configuration));
         let library = QueryLibrary::load(&settings.configuration);
         let column_layouts = Preferences::load(&settings.configuration).tables;
-        let own_commands = OwnCommands::load(&settings.configuration, &settings.keys, &library);
+        let own_commands = match settings.hosted {
+            true => OwnCommands::default(),
+            false => OwnCommands::load(&settings.configuration, &settings.keys, &library),
+        };
         let status = own_commands.problem_summary().map(|text| StatusMessage { text, is_error: true });
         App {
             library,
             own_commands,
             own_lines: own_commands::LineQueue::default(),
             theme: settings.theme,
-            keys: settings.keys,
+            keys: if settings.hosted { hosted_keys(settings.keys) } else { settings.keys },
+            is_hosted: settings.hosted,
             glyphs: settings.glyphs,
             mouse: true,
             themes: crate::themes::all_themes(&settings.configuration),
@@ -278,7 +305,7 @@ impl App {
             typing_log: TypingLog::default(),
             edit_source: EditSource::Typed,
             explained_term: None,
-            code_check: None,
+            has_code: false,
             drafts: drafts::DraftState::default(),
             status,
             busy: None,
@@ -332,7 +359,11 @@ impl App {
 
     /// Removes and returns all collected orders.
     pub fn take_orders(&mut self) -> Vec<Order> {
-        std::mem::take(&mut self.orders)
+        let mut orders = std::mem::take(&mut self.orders);
+        if self.is_hosted {
+            orders.retain(Order::is_executed_in_hosted_session);
+        }
+        orders
     }
 
     /// Removes and returns the orders for the session thread. Other orders stay collected.

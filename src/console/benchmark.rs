@@ -145,6 +145,7 @@ mod tests {
             runs: runs.to_owned(),
             resume_command: String::new(),
             lists_all_participants: false,
+            hosted: false,
             opponents: |_, _, _| Ok(None),
         }
     }

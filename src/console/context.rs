@@ -84,9 +84,10 @@ impl ScreenContext<'_> {
         }
     }
 
-    /// Returns the keys and the titles of several actions.
+    /// Returns the keys and the titles of several actions, without actions that are not available.
     pub fn hints(&self, actions: &[Action]) -> String {
-        actions.iter().map(|action| self.hint(*action)).collect::<Vec<_>>().join(" · ")
+        let available = actions.iter().filter(|action| self.keys.is_available(**action));
+        available.map(|action| self.hint(*action)).collect::<Vec<_>>().join(" · ")
     }
 }
 

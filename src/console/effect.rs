@@ -144,6 +144,8 @@ pub enum Effect {
     StartTour,
     /// Show the pages of a study to participants.
     StartStudy(Box<Study>),
+    /// Show the next step of the participant with a label in a hosted session of a study.
+    StartHostedSession(Box<Study>, String),
     /// Restore the offered drafts (`true`) or discard the drafts (`false`).
     ResolveDraftOffer(bool),
     /// Stop the clock, with a reason if the study requires one.

@@ -496,6 +496,7 @@ fn footer_actions(app: &App) -> Vec<Action> {
             actions.extend(always.filter(|action| !screen_actions.contains(action)));
         }
     }
+    actions.retain(|action| app.keys.is_available(*action));
     actions
 }
 

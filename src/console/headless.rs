@@ -88,6 +88,15 @@ impl Headless {
         self.wait_until_idle()
     }
 
+    /// Starts the hosted session of the participant with a label and waits for the first page.
+    ///
+    /// # Errors
+    /// The page does not arrive.
+    pub fn start_hosted_session(&mut self, study: Study, label: &str) -> io::Result<()> {
+        self.app.start(Effect::StartHostedSession(Box::new(study), label.to_owned()));
+        self.wait_until_idle()
+    }
+
     /// Sends a request as a screen would, and waits for all responses.
     ///
     /// # Errors

@@ -3,11 +3,11 @@
 //!
 //! A binding is one chord or a short sequence: `n`, `; c`. The time between the chords of a sequence does not matter.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use toml::Table;
 
-use super::action::{Action, Scope};
+use super::action::{ACTIONS, Action, Scope};
 use novamind_tui::chord::{Chord, format_sequence, parse_sequence};
 
 /// The meaning of a chord sequence in the focused pane or dialog.
@@ -23,14 +23,18 @@ pub enum KeyMeaning {
 
 /// The key bindings, by scope.
 #[derive(Debug, Clone)]
-pub struct KeyBindings(BTreeMap<Scope, Vec<(Vec<Chord>, Action)>>);
+pub struct KeyBindings {
+    bindings: BTreeMap<Scope, Vec<(Vec<Chord>, Action)>>,
+    /// Actions that are not available, so that they have no keys and cannot be chosen otherwise.
+    removed: BTreeSet<Action>,
+}
 
 const BUNDLED_KEYS: &str = include_str!("../../configs/keys.toml");
 
 impl KeyBindings {
     /// Returns the bundled bindings.
     pub fn bundled() -> KeyBindings {
-        let mut keys = KeyBindings(BTreeMap::new());
+        let mut keys = KeyBindings { bindings: BTreeMap::new(), removed: BTreeSet::new() };
         keys.patch(BUNDLED_KEYS).expect("a test parses the bundled keys");
         keys
     }
@@ -47,6 +51,19 @@ impl KeyBindings {
             keys.patch(&source.text).map_err(|problem| format!("{}: {problem}", source.name))?;
         }
         Ok(keys)
+    }
+
+    /// Makes all other actions unavailable and removes their bindings.
+    pub fn retain_actions(mut self, is_available: impl Fn(Action) -> bool) -> KeyBindings {
+        self.bindings.values_mut().for_each(|bound| bound.retain(|(_, action)| is_available(*action)));
+        let all = ACTIONS.iter().map(|entry| entry.action);
+        self.removed = all.filter(|action| !is_available(*action)).collect();
+        self
+    }
+
+    /// Returns whether an action is available at all, with or without a key.
+    pub fn is_available(&self, action: Action) -> bool {
+        !self.removed.contains(&action)
     }
 
     /// Replaces the bindings of the actions that a key file names.
@@ -74,7 +91,7 @@ impl KeyBindings {
             .iter()
             .map(|chords| parse_sequence(chords.as_str().ok_or("expected a key as text, for example \"n\"")?))
             .collect();
-        let bindings = self.0.entry(scope).or_default();
+        let bindings = self.bindings.entry(scope).or_default();
         bindings.retain(|(_, bound_action)| *bound_action != action);
         for chords in parsed? {
             let clash = |bound: &[Chord]| bound.starts_with(&chords) || chords.starts_with(bound);
@@ -89,7 +106,7 @@ impl KeyBindings {
     /// Returns the meaning of a chord sequence in the innermost scope that binds it.
     pub fn meaning(&self, scopes: &[Scope], pressed: &[Chord]) -> KeyMeaning {
         let in_scope = |scope: &Scope| {
-            let mut begins = self.0.get(scope)?.iter().filter(|(bound, _)| bound.starts_with(pressed));
+            let mut begins = self.bindings.get(scope)?.iter().filter(|(bound, _)| bound.starts_with(pressed));
             let (bound, action) = begins.next()?;
             Some(if bound.len() == pressed.len() { KeyMeaning::Action(*action) } else { KeyMeaning::Prefix })
         };
@@ -103,7 +120,7 @@ impl KeyBindings {
             rest.map(|rest| (format_sequence(rest), *action))
         };
         let mut following: Vec<(String, Action)> = Vec::new();
-        for found in scopes.iter().filter_map(|scope| self.0.get(scope)).flatten().filter_map(longer) {
+        for found in scopes.iter().filter_map(|scope| self.bindings.get(scope)).flatten().filter_map(longer) {
             if !following.iter().any(|(chords, _)| *chords == found.0) {
                 following.push(found);
             }
@@ -126,7 +143,7 @@ impl KeyBindings {
 
     /// Returns all bindings of an action.
     pub fn chords(&self, action: Action) -> impl Iterator<Item = &[Chord]> + '_ {
-        let bindings = self.0.get(&action.entry().scope).into_iter().flatten();
+        let bindings = self.bindings.get(&action.entry().scope).into_iter().flatten();
         bindings.filter(move |(_, bound_action)| *bound_action == action).map(|(chords, _)| chords.as_slice())
     }
 

@@ -19,6 +19,7 @@ mod files;
 mod forecast_fan;
 mod frame;
 pub mod headless;
+mod hosted;
 mod input_gate;
 pub mod keys;
 mod lesson;
@@ -150,6 +151,9 @@ impl Console {
         #[cfg(debug_assertions)]
         inject_panic(&message);
         match message {
+            // A hosted session has no shell that could continue it.
+            #[cfg(unix)]
+            Message::Signal(signal_hook::consts::SIGTSTP) if self.app.is_hosted => {}
             #[cfg(unix)]
             Message::EditorClosed(_) => {
                 self.close_editor()?;
@@ -216,6 +220,7 @@ impl Console {
             }
         }
         let folder = match &self.app.stage {
+            Stage::Run(_) if self.app.is_hosted => None,
             Stage::Run(run) => run.company.folder.as_ref().map(|folder| folder.display().to_string()),
             Stage::Menu(_) | Stage::Study(_) => None,
         };

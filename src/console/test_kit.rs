@@ -74,6 +74,7 @@ pub fn settings(runs: &Path) -> Settings {
         runs: runs.to_owned(),
         resume_command: "novamind --run latest".to_owned(),
         lists_all_participants: false,
+        hosted: false,
         opponents: |_, _, _| Ok(None),
     }
 }

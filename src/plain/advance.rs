@@ -227,7 +227,10 @@ fn end_response(command: &str, session: &Session, week: &WeekResult) -> CommandR
 ///
 /// # Errors
 /// The input cannot be read, or the prompt cannot be written.
-pub fn ask_next_week_input(session: &Session, input: &mut LineSource) -> io::Result<Option<NextWeekInput>> {
+pub fn ask_next_week_input(
+    session: &mut Session,
+    input: &mut LineSource,
+) -> io::Result<Option<NextWeekInput>> {
     let seen = session.company().observe();
     let changes = seen.changes.iter().map(super::commands::describe_setting_change);
     let mut lines: Vec<String> = changes.chain(seen.purchases.iter().cloned()).collect();
@@ -238,15 +241,19 @@ pub fn ask_next_week_input(session: &Session, input: &mut LineSource) -> io::Res
     lines.extend(late_project_lines(&seen));
     show_prompt(&format!("{}\n", lines.join("\n")))?;
     let access = session.lesson().map(LessonProgress::access);
-    let rationale = match access.is_some_and(LessonAccess::is_rationale_off) {
+    let (is_rationale_off, uses_naive_forecasts) = (
+        access.is_some_and(LessonAccess::is_rationale_off),
+        access.is_some_and(LessonAccess::uses_naive_forecasts),
+    );
+    let rationale = match is_rationale_off {
         true => None,
-        false => match ask_rationale(input)? {
+        false => match ask_rationale(session, input)? {
             None => return Ok(None),
             why => why,
         },
     };
     let mut forecasts = session.company().naive_forecasts();
-    if access.is_some_and(LessonAccess::uses_naive_forecasts) {
+    if uses_naive_forecasts {
         let predictions = forecasts.to_predictions();
         return Ok(Some(NextWeekInput::Given { rationale: rationale.into(), predictions, naive: [true; 4] }));
     }
@@ -255,7 +262,7 @@ pub fn ask_next_week_input(session: &Session, input: &mut LineSource) -> io::Res
     }
     let fields = forecasts.all.iter_mut().zip(&mut forecasts.filled_naively);
     for ((forecast, filled), weeks) in fields.zip([1, 4, 12, 26]).take(seen.horizons_in_run) {
-        match ask_forecast(input, weeks, *forecast)? {
+        match ask_forecast(session, input, weeks, *forecast)? {
             None => return Ok(None),
             Some((given, naive)) => {
                 (*forecast, *filled) = (given, naive);
@@ -274,9 +281,9 @@ fn naive_coverage(session: &Session, seen: &Observation) -> Option<String> {
 }
 
 /// Asks for the rationale. Returns `None` if the player cancels.
-fn ask_rationale(input: &mut LineSource) -> io::Result<Option<String>> {
+fn ask_rationale(session: &mut Session, input: &mut LineSource) -> io::Result<Option<String>> {
     loop {
-        match ask_line(input, "why (. cancels)> ")? {
+        match ask_line(session, input, "why (. cancels)> ")? {
             Some(line) if line.trim().is_empty() => show_prompt("a rationale is required\n")?,
             line => return Ok(line),
         }
@@ -284,7 +291,12 @@ fn ask_rationale(input: &mut LineSource) -> io::Result<Option<String>> {
 }
 
 /// Asks for one forecast. Also returns whether the player accepted the naive forecast.
-fn ask_forecast(input: &mut LineSource, weeks: u32, naive: Forecast) -> io::Result<Option<(Forecast, bool)>> {
+fn ask_forecast(
+    session: &mut Session,
+    input: &mut LineSource,
+    weeks: u32,
+    naive: Forecast,
+) -> io::Result<Option<(Forecast, bool)>> {
     let whole = |value: f64| grouped_number(value, 0).replace(',', "");
     let text = format!(
         "{weeks} {}: point lower upper, or enter for the naive {} {} {}> ",
@@ -294,7 +306,7 @@ fn ask_forecast(input: &mut LineSource, weeks: u32, naive: Forecast) -> io::Resu
         whole(naive.upper)
     );
     loop {
-        let Some(line) = ask_line(input, &text)? else { return Ok(None) };
+        let Some(line) = ask_line(session, input, &text)? else { return Ok(None) };
         if ["", "naive"].contains(&line.trim()) {
             return Ok(Some((naive, true)));
         }
@@ -328,10 +340,10 @@ fn parse_forecast(line: &str, horizon_days: u32) -> Result<Forecast, String> {
 }
 
 /// Prompts for a line. Returns `None` for a dot and at the end of input.
-fn ask_line(input: &mut LineSource, text: &str) -> io::Result<Option<String>> {
+fn ask_line(session: &mut Session, input: &mut LineSource, text: &str) -> io::Result<Option<String>> {
     loop {
         show_prompt(text)?;
-        match input.read_line()? {
+        match input.wait_for_line(session)? {
             InputLine::End => return Ok(None),
             InputLine::Line(line) if line.trim() == "." => return Ok(None),
             InputLine::Line(line) => return Ok(Some(line)),

@@ -42,7 +42,7 @@ use novamind_record::trajectory::record::{Activity, HelpRequest, ObjectSelection
 use novamind_report::research::describe_late_project;
 use novamind_session::{RunDatabase, Session, SettingChange, rows_to_json};
 use novamind_study::CodeCheck;
-use novamind_tools::{AnyTool, ToolId, ToolKind, ToolModule};
+use novamind_tools::{AnyTool, Rejection, ToolId, ToolKind, ToolModule};
 
 /// Names of the command that simulates a week, in plain mode and as a tool.
 const NEXT_WEEK_COMMANDS: [&str; 3] = ["next", "next-week", "next_week"];
@@ -152,6 +152,47 @@ const COMMANDS: &[(&str, &str)] = &[
     ("what", ""),
 ];
 
+/// Commands that are available in hosted sessions, except tools. A command that is in neither this list nor the list
+/// in the tests is not available, and a test fails.
+const HOSTED_COMMANDS: &[&str] = &[
+    "sql",
+    "queries",
+    "next",
+    "dashboard",
+    "status",
+    "inbox",
+    "thread",
+    "rules",
+    "needs",
+    "fit",
+    "leads",
+    "curve",
+    "changes",
+    "check",
+    "undo",
+    "redo",
+    "history",
+    "report",
+    "memo",
+    "tools",
+    "tables",
+    "explain",
+    "glossary",
+    "vars",
+    "help",
+    "pause",
+    "resume",
+    "quit",
+    "query",
+    "next-week",
+    "what",
+];
+
+/// Returns whether a command is available in hosted sessions.
+fn is_hosted_command(name: &str) -> bool {
+    HOSTED_COMMANDS.contains(&name)
+}
+
 /// Commands that only show information. The use of these commands is recorded as activity.
 const READ_COMMANDS: &[&str] = &[
     "dashboard",
@@ -184,6 +225,12 @@ pub struct Interpreter {
     pub(super) code_check: Option<CodeCheck>,
     /// Whether the player is a participant of a study, for whom some commands are not available.
     pub(super) is_participant: bool,
+    /// Whether the session is hosted, so that only [`HOSTED_COMMANDS`] and tools are available.
+    pub(super) is_hosted: bool,
+    /// Whether the participant answers questions after the last week, before the result is shown.
+    pub(super) has_final_questions: bool,
+    /// The response to the last week, which is shown after the final questions.
+    pub(super) held_result: Option<CommandResponse>,
     /// Cached simulations for the last `why` question.
     cached_causes: AnalysisCache<CauseAnalysis>,
     /// Cached simulations for the last `whatif` question.
@@ -207,6 +254,9 @@ impl Interpreter {
             is_interactive: prompts,
             code_check: None,
             is_participant: false,
+            is_hosted: false,
+            has_final_questions: false,
+            held_result: None,
             cached_causes: AnalysisCache::default(),
             cached_branches: AnalysisCache::default(),
         }
@@ -223,7 +273,7 @@ impl Interpreter {
     ) -> io::Result<Option<CommandResponse>> {
         let parsed = grammar::parse_line(line);
         if let Ok(line) = &parsed
-            && let Some(refused) = self.reject_while_paused(line)
+            && let Some(refused) = self.reject_while_paused(line).or_else(|| self.reject_if_hosted(line))
         {
             return Ok(Some(refused));
         }
@@ -308,18 +358,56 @@ impl Interpreter {
     }
 
     fn next_week(&mut self, arguments: &[Argument], input: &mut LineSource) -> io::Result<CommandResponse> {
+        let day = self.session.day();
         let filing = match advance::parse_next_week_input(arguments, &self.session, self.is_interactive) {
-            Ok(advance::NextWeekInput::Ask) => match advance::ask_next_week_input(&self.session, input)? {
-                Some(filing) => filing,
-                None => {
-                    let text = "cancelled; no day has passed".to_owned();
-                    return Ok(CommandResponse::success("next", text, json!({ "cancelled": true })));
+            Ok(advance::NextWeekInput::Ask) => {
+                match advance::ask_next_week_input(&mut self.session, input)? {
+                    Some(filing) => filing,
+                    None => {
+                        let text = "cancelled; no day has passed".to_owned();
+                        return Ok(CommandResponse::success("next", text, json!({ "cancelled": true })));
+                    }
                 }
-            },
+            }
             Ok(filing) => filing,
             Err(problem) => return Ok(syntax_error(problem)),
         };
-        Ok(advance::advance_week(&mut self.session, filing))
+        // The time for the week may have ended while the player was typing.
+        let limits = self.check_limits();
+        match limits.into_iter().reduce(CommandResponse::followed_by) {
+            Some(response) if self.session.day() != day || self.session.log().is_clock_stopped() => {
+                Ok(response)
+            }
+            Some(response) => Ok(response.followed_by(self.advance(filing))),
+            None => Ok(self.advance(filing)),
+        }
+    }
+
+    /// Submits the week and simulates it. The result of the last week is held back until the participant has answered
+    /// the final questions.
+    pub(super) fn advance(&mut self, filing: advance::NextWeekInput) -> CommandResponse {
+        let response = advance::advance_week(&mut self.session, filing);
+        if self.session.ended().is_none() || !self.has_final_questions || !response.is_success() {
+            return response;
+        }
+        self.held_result = Some(response);
+        let text = "the run is over; please answer the last questions".to_owned();
+        CommandResponse::success("next", text, json!({ "ended": true }))
+    }
+
+    /// Rejects commands that are not available in hosted sessions.
+    fn reject_if_hosted(&self, line: &ParsedLine) -> Option<CommandResponse> {
+        let word = match line {
+            ParsedLine::Empty => return None,
+            ParsedLine::TextCommand { word, .. } | ParsedLine::Call { word, .. } => {
+                grammar::current_name(word)
+            }
+        };
+        let is_command = COMMANDS.iter().any(|(name, _)| *name == word);
+        (self.is_hosted && is_command && !is_hosted_command(word)).then(|| {
+            let text = format!("{word} is not available in a hosted session");
+            CommandResponse::rejected(word, Rejection::new("not_available", text))
+        })
     }
 
     fn execute_command(&mut self, word: &str, column: usize, arguments: &[Argument]) -> CommandResponse {
@@ -340,8 +428,9 @@ impl Interpreter {
                 expect_no_arguments(arguments).map(|()| self.call_tool_by_id(ToolId::GetVars, &json!({})))
             }
             "help" => {
-                let (numbers, led) = (self.session.numbers(), self.is_participant);
-                optional_name(arguments).and_then(|name| help::help(name, arguments, &numbers, led))
+                let numbers = self.session.numbers();
+                let audience = help::Audience { led: self.is_participant, hosted: self.is_hosted };
+                optional_name(arguments).and_then(|name| help::help(name, arguments, &numbers, audience))
             }
             "tools" => optional_name(arguments)
                 .and_then(|name| overview::tools_command(name, arguments, &self.session.numbers())),
@@ -540,5 +629,28 @@ fn optional_count(arguments: &[Argument]) -> Result<Option<u32>, ParseError> {
         [] => Ok(None),
         [Argument { key: None, value, .. }] if number(value).is_some() => Ok(number(value)),
         _ => Err(argument_error(arguments, "this command takes at most one argument, a whole number from 1")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Commands that are not available in hosted sessions: they create or open other runs, show hidden state, belong
+    /// to lessons or debug runs, or simulate the run again.
+    const CLOSED_COMMANDS: &[&str] = &[
+        "why", "whatif", "branch", "branches", "step", "xray", "lens", "break", "run", "since", "find",
+        "who", "diff", "lesson", "guess", "hint", "debrief", "retry", "set",
+    ];
+
+    #[test]
+    fn every_command_is_in_exactly_one_hosted_list() {
+        for (name, _) in COMMANDS {
+            let lists = [HOSTED_COMMANDS, CLOSED_COMMANDS].map(|list| list.contains(name));
+            assert_ne!(lists[0], lists[1], "{name}: add it to one of the two lists");
+        }
+        let is_command = |name: &&&str| COMMANDS.iter().any(|(command, _)| *command == **name);
+        let all = HOSTED_COMMANDS.iter().chain(CLOSED_COMMANDS);
+        assert_eq!(all.filter(is_command).count(), HOSTED_COMMANDS.len() + CLOSED_COMMANDS.len());
     }
 }

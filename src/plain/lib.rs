@@ -16,10 +16,11 @@ mod response;
 mod signals;
 
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 
 use serde_json::{Value, json};
 
-pub use participant_session::run_participant_session;
+pub use participant_session::{Entrance, run_participant_session};
 
 pub use novamind_database::text::{format_cell, format_result};
 
@@ -56,18 +57,32 @@ pub fn play(session: Session, library: QueryLibrary, style: OutputStyle) -> io::
     run_dialogue(session, library, style, None, &mut lines).map(|(end, _)| end.exit_code())
 }
 
+/// A participant of a study who plays a run.
+#[derive(Debug, Clone, Copy)]
+struct Participant<'a> {
+    study: &'a Study,
+    /// The machine's folder of runs.
+    runs: &'a Path,
+    is_hosted: bool,
+}
+
 /// Executes lines until the player leaves or the input ends.
 fn run_dialogue(
     mut session: Session,
     library: QueryLibrary,
     style: OutputStyle,
-    study: Option<&Study>,
+    participant: Option<Participant<'_>>,
     lines: &mut LineSource,
 ) -> io::Result<(EndReason, Session)> {
+    let study = participant.map(|participant| participant.study);
     session.activity().attach(Interface { name: "plain", window: None });
     let mut interpreter = Interpreter::new(session, library, lines.signal_watch(), io::stdin().is_terminal());
-    interpreter.code_check = study.and_then(Study::code_check);
+    interpreter.code_check =
+        participant.and_then(|participant| participant.study.code_check(participant.runs));
     interpreter.is_participant = study.is_some();
+    interpreter.is_hosted = participant.is_some_and(|participant| participant.is_hosted);
+    interpreter.has_final_questions =
+        study.is_some_and(|study| study.has_final_questions(&interpreter.session));
     let mut out = io::stdout();
     let mut unsaved = 0;
     let end = command_loop(&mut interpreter, lines, &mut out, style, study, &mut unsaved);
@@ -108,7 +123,15 @@ fn command_loop(
     study: Option<&Study>,
     unsaved: &mut u32,
 ) -> io::Result<EndReason> {
-    greet(out, &interpreter.session, style)?;
+    let asks_first = study.is_some_and(|study| {
+        interpreter.session.ended().is_some() && !study.due_questions(&interpreter.session).is_empty()
+    });
+    greet(out, &interpreter.session, style, asks_first)?;
+    if asks_first && !interpreter.session.rules().hides_result(true) {
+        let text = interpreter.session.company().observe().dashboard;
+        let data = json!({ "dashboard": text });
+        interpreter.held_result = Some(CommandResponse::success("dashboard", text, data));
+    }
     if let Some(command_response) = interpreter.restore_limit_pause() {
         print_response(out, style, lines.line_number(), None, &command_response, interpreter.session.day())?;
     }
@@ -117,12 +140,17 @@ fn command_loop(
             print_response(out, style, lines.line_number(), None, &response, interpreter.session.day())?;
         }
         if let Some(end) = ask_questions(interpreter, lines, style, study)? {
+            let result = interpreter.held_result.take().filter(|_| end == EndReason::RunOver);
+            if let Some(result) = result {
+                print_response(out, style, lines.line_number(), None, &result, interpreter.session.day())?;
+            }
             return Ok(end);
         }
         if interpreter.is_interactive && !lines.is_waiting() {
             show_prompt(&interpreter.prompt_text())?;
         }
-        let read = lines.read_line_timeout(interpreter.limit_check_timeout())?;
+        let timeout = interpreter.limit_check_timeout();
+        let read = lines.read_watched_line(&mut interpreter.session, timeout)?;
         let number = lines.line_number();
         let (line, day) = match read {
             None => continue,
@@ -198,9 +226,10 @@ fn show_prompt(text: &str) -> io::Result<()> {
     if io::stdout().is_terminal() { write(&mut io::stdout()) } else { write(&mut io::stderr()) }
 }
 
-fn greet(out: &mut io::Stdout, session: &Session, style: OutputStyle) -> io::Result<()> {
+/// Prints the run and its dashboard. The dashboard of a run that has ended follows the final questions.
+fn greet(out: &mut io::Stdout, session: &Session, style: OutputStyle, asks_first: bool) -> io::Result<()> {
     let seen = session.company().observe();
-    let hides_result = session.rules().hides_result(session.ended().is_some());
+    let hides_result = asks_first || session.rules().hides_result(session.ended().is_some());
     let dashboard = if hides_result { "" } else { seen.dashboard.as_str() };
     if style.json {
         let event = json!({

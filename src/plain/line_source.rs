@@ -7,6 +7,8 @@ use std::time::Duration;
 use super::end_reason::EndReason;
 use super::input::{Input, InputLine};
 use super::signals::{Phase, SignalWatch};
+use novamind_record::clock::monotonic_time;
+use novamind_session::{IdleWatch, Session};
 
 /// An event that ends the wait for a line.
 enum LineEvent {
@@ -23,6 +25,7 @@ pub struct LineSource {
     watch: SignalWatch,
     /// Whether a line has been requested and has not arrived yet.
     is_requested: bool,
+    idle: IdleWatch,
     number: u32,
 }
 
@@ -42,7 +45,14 @@ impl LineSource {
                 }
             }
         });
-        LineSource { requests: wanted, events, watch, is_requested: false, number: 1 }
+        LineSource {
+            requests: wanted,
+            events,
+            watch,
+            is_requested: false,
+            idle: IdleWatch::default(),
+            number: 1,
+        }
     }
 
     /// Returns the signal watch of the session.
@@ -103,6 +113,46 @@ impl LineSource {
             Some(LineEvent::Line(number, read)) => {
                 (self.is_requested, self.number) = (false, number);
                 read.map(Some)
+            }
+        }
+    }
+
+    /// Waits for a line for at most this duration, and records when the player becomes idle and returns. Returns `None`
+    /// if no line has arrived.
+    ///
+    /// # Errors
+    /// Standard input cannot be read.
+    pub fn read_watched_line(
+        &mut self,
+        session: &mut Session,
+        at_most: Option<Duration>,
+    ) -> io::Result<Option<InputLine>> {
+        if !self.is_requested {
+            // The program was busy until now, so the player was not idle.
+            self.idle.start(monotonic_time());
+        }
+        let until_idle = self.idle.next_deadline().map(|due| due.saturating_sub(monotonic_time()));
+        let at_most = [at_most, until_idle].into_iter().flatten().min();
+        let read = self.read_line_timeout(at_most)?;
+        let event = match &read {
+            None => self.idle.check_time(monotonic_time()),
+            Some(InputLine::End) => None,
+            Some(_) => self.idle.handle_input(monotonic_time()),
+        };
+        if let Some((event, idle_ms)) = event.filter(|_| !session.log().is_clock_stopped()) {
+            session.activity().record_presence(event, Some(idle_ms), None);
+        }
+        Ok(read)
+    }
+
+    /// Waits for a line, and records when the player becomes idle and returns.
+    ///
+    /// # Errors
+    /// Standard input cannot be read.
+    pub fn wait_for_line(&mut self, session: &mut Session) -> io::Result<InputLine> {
+        loop {
+            if let Some(read) = self.read_watched_line(session, None)? {
+                return Ok(read);
             }
         }
     }

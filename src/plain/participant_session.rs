@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::input::InputLine;
 use super::line_source::LineSource;
-use super::{EndReason, OutputStyle, confirm_withdrawal, run_dialogue, show_prompt};
+use super::{EndReason, OutputStyle, Participant, confirm_withdrawal, run_dialogue, show_prompt};
 use novamind_base::formatting::escape_control_characters;
 use novamind_record::clock::monotonic_time;
 use novamind_record::consent::{ConsentAgreement, ConsentDetails, ConsentMeans};
@@ -16,7 +16,9 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::query_library::QueryLibrary;
 use novamind_report::prose::to_plain_text;
 use novamind_session::Session;
-use novamind_study::{DECLINED_NOTICE, NextStep, ParticipantSession, Study};
+use novamind_study::{
+    CLOSE_WINDOW_NOTICE, DECLINED_NOTICE, NextStep, ParticipantSession, RETURN_LATER_NOTICE, Study,
+};
 
 /// The reason why a visit ends early.
 enum SessionStop {
@@ -40,7 +42,38 @@ impl From<io::Error> for SessionStop {
     }
 }
 
-/// Guides a participant through a study. Returns the exit code. `again` is the command that continues the study.
+/// How a participant reaches the session.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Entrance<'a> {
+    /// The participant enters a label on this computer. The text is the command that continues the study.
+    Label(&'a str),
+    /// The participant with this label has a hosted session.
+    Hosted(&'a str),
+}
+
+impl Entrance<'_> {
+    fn is_hosted(self) -> bool {
+        matches!(self, Entrance::Hosted(_))
+    }
+
+    /// Explains how to continue the session.
+    fn describe_return(self) -> String {
+        match self {
+            Entrance::Label(command) => format!("To continue, run `{command}` and give the same label."),
+            Entrance::Hosted(_) => format!("{CLOSE_WINDOW_NOTICE} {RETURN_LATER_NOTICE}"),
+        }
+    }
+
+    /// Asks the participant to report to the experimenter, or says that the window can be closed.
+    fn describe_end(self, report: &str) -> String {
+        match self {
+            Entrance::Label(_) => report.to_owned(),
+            Entrance::Hosted(_) => CLOSE_WINDOW_NOTICE.to_owned(),
+        }
+    }
+}
+
+/// Guides a participant through a study. Returns the exit code.
 ///
 /// # Errors
 /// A run or a file of the study cannot be read; standard input or output fails.
@@ -49,10 +82,11 @@ pub fn run_participant_session(
     runs: &Path,
     configuration: &Configuration,
     style: OutputStyle,
-    resume_command: &str,
+    entrance: Entrance<'_>,
 ) -> Result<u8, RunError> {
     let lines = LineSource::from_stdin();
-    let mut host = SessionHost { lines, configuration, style, consent: None, resume_command };
+    let mut host =
+        SessionHost { lines, configuration, style, consent: None, entrance, runs: runs.to_owned() };
     match host.run_steps(study, runs) {
         Ok(code) | Err(SessionStop::Left(code)) => Ok(code),
         Err(SessionStop::Run(error)) => Err(error),
@@ -74,13 +108,18 @@ struct SessionHost<'a> {
     configuration: &'a Configuration,
     style: OutputStyle,
     consent: Option<ConsentAgreement>,
-    resume_command: &'a str,
+    entrance: Entrance<'a>,
+    /// The machine's folder of runs.
+    runs: PathBuf,
 }
 
 impl SessionHost<'_> {
     fn run_steps(&mut self, study: Study, runs: &Path) -> Result<u8, SessionStop> {
         self.show_text("study", &study.protocol.title)?;
-        let visit = self.ask_label(study, runs)?;
+        let visit = match self.entrance {
+            Entrance::Label(_) => self.ask_label(study, runs)?,
+            Entrance::Hosted(label) => ParticipantSession::start(study, runs, label, 0)?,
+        };
         loop {
             let step = match visit.next_step()? {
                 // The participant has agreed. Consent is recorded in the first run, which does not exist yet.
@@ -104,36 +143,67 @@ impl SessionHost<'_> {
                 }
                 NextStep::Questions(folder) => self.play_run(&visit, visit.open_run(&folder)?)?,
                 NextStep::Withdrawn(kept) => {
-                    self.show_text("withdrawn", &format!("You have withdrawn from this study. {kept}"))?;
+                    let end = self.entrance.describe_end("");
+                    let text = format!("You have withdrawn from this study. {kept} {end}");
+                    self.show_text("withdrawn", text.trim_end())?;
                     return Ok(0);
                 }
                 NextStep::Thanks => {
                     visit.record_finished();
-                    self.show_text(
-                        "thanks",
-                        "Thank you. Everything is recorded. Please tell the experimenter that you have finished.",
-                    )?;
-                    return Ok(0);
+                    let end = "Everything is recorded. Please tell the experimenter that you have finished.";
+                    let text = format!("Thank you. {}", self.entrance.describe_end(end));
+                    self.show_text("thanks", &text)?;
+                    if !self.asks_to_withdraw_at_end(&visit)? {
+                        return Ok(0);
+                    }
                 }
             }
         }
     }
 
-    /// Asks for the participant's label until the label is valid.
+    /// Asks for the participant's label until the label is valid. The participant can withdraw here too.
     fn ask_label(&mut self, study: Study, runs: &Path) -> Result<ParticipantSession, SessionStop> {
-        let mut refused = 0;
+        let (mut refused, mut withdraws) = (0, false);
         loop {
-            let label = self.ask_line("label", "Your label (or quit to leave):")?;
+            let question = match withdraws {
+                false => "Your label (or type quit to leave, withdraw to erase your runs of this study):",
+                true => "The label whose runs of this study are to be erased (or quit to leave):",
+            };
+            let label = self.ask_line("label", question)?;
             if is_quit(&label) {
                 return Err(SessionStop::Left(0));
             }
+            if label.trim() == "withdraw" {
+                withdraws = true;
+                continue;
+            }
             match ParticipantSession::start(study.clone(), runs, &label, refused) {
-                Ok(visit) => return Ok(visit),
+                Ok(visit) => {
+                    if withdraws && confirm_withdrawal(self.style, &mut self.lines)? {
+                        visit.withdraw()?;
+                    }
+                    return Ok(visit);
+                }
                 Err(RunError::InvalidRequest(problem)) => {
                     refused += 1;
                     self.show_text("label_refused", &problem)?;
                 }
                 Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    /// Asks after the end of the study whether the participant withdraws. Returns whether the runs were erased.
+    fn asks_to_withdraw_at_end(&mut self, visit: &ParticipantSession) -> Result<bool, SessionStop> {
+        let question = "Press enter to end, or type withdraw to erase your runs of this study:";
+        loop {
+            match self.ask_line("end", question)?.trim() {
+                "withdraw" if confirm_withdrawal(self.style, &mut self.lines)? => {
+                    visit.withdraw()?;
+                    return Ok(true);
+                }
+                "withdraw" => {}
+                _ => return Ok(false),
             }
         }
     }
@@ -154,7 +224,8 @@ impl SessionHost<'_> {
             }
             Some(_) => {
                 visit.record_declined();
-                self.show_text("declined", &format!("{DECLINED_NOTICE} Please tell the experimenter."))?;
+                let end = self.entrance.describe_end("Please tell the experimenter.");
+                self.show_text("declined", &format!("{DECLINED_NOTICE} {end}"))?;
                 Err(SessionStop::Left(0))
             }
         }
@@ -203,10 +274,7 @@ impl SessionHost<'_> {
             }
             match typed.as_str() {
                 typed if is_quit(typed) => {
-                    let text = format!(
-                        "You have left. To continue, run `{}` and give the same label.",
-                        self.resume_command
-                    );
+                    let text = format!("You have left. {}", self.entrance.describe_return());
                     self.show_text("later", &text)?;
                     return Err(SessionStop::Left(0));
                 }
@@ -238,8 +306,9 @@ impl SessionHost<'_> {
     /// Plays a run until the run is over and all questions are answered, or the participant leaves.
     fn play_run(&mut self, visit: &ParticipantSession, session: Session) -> Result<(), SessionStop> {
         let library = QueryLibrary::load(self.configuration);
-        let (end, session) =
-            run_dialogue(session, library, self.style, Some(visit.study()), &mut self.lines)?;
+        let participant =
+            Participant { study: visit.study(), runs: &self.runs, is_hosted: self.entrance.is_hosted() };
+        let (end, session) = run_dialogue(session, library, self.style, Some(participant), &mut self.lines)?;
         let is_finished = session.ended().is_some() && visit.study().due_questions(&session).is_empty();
         // Close the run, because an open run cannot be erased.
         drop(session);
@@ -248,10 +317,8 @@ impl SessionHost<'_> {
             EndReason::Quit | EndReason::RunOver if is_finished => Ok(()),
             EndReason::RecordLost => Err(SessionStop::Left(end.exit_code())),
             end => {
-                let text = format!(
-                    "All confirmed actions are saved. To continue, run `{}` and give the same label.",
-                    self.resume_command
-                );
+                let saved = if self.entrance.is_hosted() { "" } else { "All confirmed actions are saved. " };
+                let text = format!("{saved}{}", self.entrance.describe_return());
                 self.show_text("later", &text)?;
                 Err(SessionStop::Left(end.exit_code()))
             }

@@ -4,12 +4,13 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use super::advance::{self, NextWeekInput};
+use super::advance::NextWeekInput;
 use super::commands::Interpreter;
 use super::grammar::ParsedLine;
 use super::response::CommandResponse;
 use novamind_record::trajectory::record::{Limit, LimitEvent};
 use novamind_session::TIME_LIMIT_RATIONALE;
+use novamind_study::CodeOutcome;
 use novamind_tools::Rejection;
 
 /// Commands that are allowed while the clock is stopped.
@@ -31,9 +32,13 @@ impl Interpreter {
 
     /// Executes `resume`. If a time limit stopped the clock, the experimenter's code is required.
     pub(super) fn resume(&mut self, code: &str) -> CommandResponse {
-        let right = self.code_check.as_ref().is_none_or(|check| check(code));
-        if self.session.log().is_stopped_by_limit() && !right {
-            let text = "the time limit is reached. To restart the clock, the experimenter types: resume CODE";
+        let outcome = self.check_limit_code(code);
+        if outcome != CodeOutcome::Right {
+            let text = match outcome {
+                CodeOutcome::Wait(_) => outcome.describe(),
+                _ => "the time limit is reached. To restart the clock, the experimenter types: resume CODE"
+                    .to_owned(),
+            };
             return CommandResponse::rejected("resume", Rejection::new("code_needed", text));
         }
         match self.session.activity().start_clock() {
@@ -42,6 +47,17 @@ impl Interpreter {
                 CommandResponse::success("resume", text, json!({ "stood_seconds": stood }))
             }
             Err(rejection) => CommandResponse::rejected("resume", rejection),
+        }
+    }
+
+    /// Checks the experimenter's code if a time limit has stopped the clock. An empty code is not an attempt.
+    fn check_limit_code(&self, code: &str) -> CodeOutcome {
+        match &self.code_check {
+            Some(_) if self.session.log().is_stopped_by_limit() && code.trim().is_empty() => {
+                CodeOutcome::Wrong
+            }
+            Some(check) if self.session.log().is_stopped_by_limit() => check(code),
+            _ => CodeOutcome::Right,
         }
     }
 
@@ -77,7 +93,7 @@ impl Interpreter {
             LimitEvent::Reminded => vec![limit_response("; please finish soon")],
             LimitEvent::FiledNaively => {
                 let filing = NextWeekInput::for_time_limit(&self.session);
-                let filed = advance::advance_week(&mut self.session, filing);
+                let filed = self.advance(filing);
                 vec![limit_response("; the week is submitted with naive forecasts"), filed]
             }
             LimitEvent::Paused => {

@@ -53,7 +53,7 @@ fn ask_question(
 ) -> io::Result<Option<EndReason>> {
     let shown = monotonic_time();
     loop {
-        let typed = match lines.read_line()? {
+        let typed = match lines.wait_for_line(session)? {
             InputLine::End => return Ok(Some(lines.end_reason())),
             InputLine::Unreadable(problem) => {
                 show_invalid_answer(due, &problem, style)?;

@@ -66,6 +66,21 @@ impl CommandResponse {
         self
     }
 
+    /// Returns a response with both texts and the command and data of the second response. A response that is not a
+    /// success replaces the first response.
+    pub fn followed_by(self, next: CommandResponse) -> CommandResponse {
+        match (self, next) {
+            (
+                CommandResponse::Success { text: first, .. },
+                CommandResponse::Success { command, text, data },
+            ) => {
+                let text = format!("{}\n{text}", first.trim_end());
+                CommandResponse::Success { command, text, data }
+            }
+            (_, next) => next,
+        }
+    }
+
     /// Returns the response of a rejected command.
     pub fn rejected(command: &str, refusal: Rejection) -> CommandResponse {
         CommandResponse::Rejected { command: command.to_owned(), rejection: refusal }

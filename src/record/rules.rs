@@ -67,7 +67,7 @@ pub enum DraftRecording {
     Text,
 }
 
-/// Time limits in active minutes; `None` means no limit.
+/// Time limits in minutes of a session; `None` means no limit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TimeLimits {

@@ -72,8 +72,9 @@ pub fn collect(
     std::fs::create_dir_all(out).map_err(|error| RunError::Io { path: out.to_owned(), error })?;
     // Unpack archives into a hidden folder that is deleted at the end.
     let temporary_folder = TemporaryFolder::create_in(out)?;
-    let CollectedRuns { runs, conflicts, mut notes, visits } =
+    let CollectedRuns { runs, conflicts, mut notes, mut visits } =
         collect_runs(sources, temporary_folder.path(), out, keys.verification_key);
+    relabel_visits(&mut visits, &runs, labels);
     let mut collected = CollectionResult {
         tables: StudyTables::default(),
         runs: Vec::new(),
@@ -81,7 +82,7 @@ pub fn collect(
         visits: VisitSummary::default(),
     };
     let labels_recorded: BTreeSet<&str> =
-        runs.iter().filter_map(|run| run.manifest.participant.as_deref()).collect();
+        runs.iter().filter_map(|run| label_of(run, labels)).map(String::as_str).collect();
     let of_study = |visit: &&FoundVisit| study.is_none_or(|study| visit.line.study == study.digest);
     let own_visits = visits.iter().filter(of_study).map(|visit| &visit.line);
     collected.visits = VisitSummary::from_lines(own_visits, &labels_recorded);
@@ -91,7 +92,7 @@ pub fn collect(
     for (done, run) in runs.iter().enumerate() {
         progress(done, runs.len());
         let id = &run.manifest.id;
-        let label = labels.get(id).or(run.manifest.participant.as_ref()).cloned();
+        let label = label_of(run, labels).cloned();
         if let Some(to) = labels.get(id) {
             let from = run.manifest.participant.clone().unwrap_or_default();
             notes.push(CollectNote::Relabelled { run: id.clone(), from, to: to.clone() });
@@ -132,6 +133,28 @@ pub fn collect(
     }
     collected.notes = notes;
     Ok(collected)
+}
+
+/// Returns the label of a run: the new label, or the recorded one.
+fn label_of<'a>(run: &'a FoundRun, labels: &'a BTreeMap<String, String>) -> Option<&'a String> {
+    labels.get(&run.manifest.id).or(run.manifest.participant.as_ref())
+}
+
+/// Gives the visits of a label the new label of its runs, so that the tables of visits and of runs agree. If only some
+/// runs of the label have a new label, its visits keep the typed label, because the visits do not name runs.
+fn relabel_visits(visits: &mut [FoundVisit], runs: &[FoundRun], labels: &BTreeMap<String, String>) {
+    let mut new_labels: BTreeMap<&String, BTreeSet<&String>> = BTreeMap::new();
+    for run in runs {
+        if let (Some(old), Some(new)) = (&run.manifest.participant, label_of(run, labels)) {
+            new_labels.entry(old).or_default().insert(new);
+        }
+    }
+    for visit in visits {
+        let new = new_labels.get(&visit.line.label).filter(|new| new.len() == 1);
+        if let Some(new) = new.and_then(BTreeSet::first) {
+            visit.line.label.clone_from(new);
+        }
+    }
 }
 
 fn archive_run(

@@ -6,7 +6,7 @@ use novamind_base::formatting::{dollars, grouped_number};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::rules::{DraftRecording, FreeTextRecording, LimitAction, ResultsDisclosure, TimeLimits};
-use novamind_session::{FAST_WEEK_SECONDS, IDLE_TIMEOUT, MIN_BREAK_SECONDS};
+use novamind_session::{FAST_WEEK_SECONDS, IDLE_TIMEOUT, SESSION_BREAK_SECONDS};
 use novamind_study::{
     ASSIGNMENT_FILE, AnswerFormat, Assignment, FindingKind, Occasion, PracticeOffer, Questionnaire, SeedPlan,
     Study, load_lab_public_key,
@@ -92,6 +92,12 @@ fn participants_section(study: &Study) -> String {
         SeedPlan::Blocks => {
             format!("Each block of participants plays the seeds {} in random order.", listed(&seeds.block))
         }
+        SeedPlan::Secret => format!(
+            "Each block of participants plays {} secret seeds in random order. Commitment to the seeds: {}. After the study, \
+             assignment.csv with the seeds can be published, and this command computes the same commitment from it.",
+            seeds.count.unwrap_or_default(),
+            study.seed_commitment().unwrap_or_default()
+        ),
         SeedPlan::Assigned => "Seeds are assigned by the experimenter.".to_owned(),
     };
     let conditions = match seeds.conditions.as_slice() {
@@ -113,7 +119,7 @@ fn describe_assignment(study: &Study, assignment: &Assignment) -> String {
     let seeds = &study.protocol.seeds;
     let labels: Vec<String> = assignment.rows.iter().map(|place| place.label.clone()).collect();
     let draw = seeds.draw.unwrap_or(1);
-    let is_drawn = Assignment::randomize_in_blocks(&labels, &seeds.block_seeds(), &seeds.conditions, draw)
+    let is_drawn = Assignment::randomize_in_blocks(&labels, &study.block_seeds(), &seeds.conditions, draw)
         == *assignment;
     let blocks = match (seeds.plan, is_drawn) {
         (SeedPlan::One | SeedPlan::Assigned, _) if seeds.conditions.is_empty() => String::new(),
@@ -191,9 +197,9 @@ fn rules_section(study: &Study) -> String {
 
 fn limit_rows(limits: &TimeLimits) -> String {
     let all = [
-        ("Active minutes per week of the company", limits.week_minutes),
-        ("Active minutes per session", limits.session_minutes),
-        ("Active minutes per run, over all sessions", limits.study_minutes),
+        ("Minutes per week of the company", limits.week_minutes),
+        ("Minutes per session", limits.session_minutes),
+        ("Minutes per run, over all sessions", limits.study_minutes),
     ];
     let minutes =
         |number: Option<u32>, none: &str| number.map_or(none.to_owned(), |number| number.to_string());
@@ -221,15 +227,15 @@ fn time_section() -> String {
         "## Time\n\n\
          - Active: the run is open and in front, its clock runs, no question of the study is open, and the participant is not idle.\n\
          - Answering: like active time, but while a question of the study is open.\n\
-         - Idle: in the console, from the last key if no other follows within {} s. Plain mode does not receive keys; there, a gap \
-         of more than {} s between two lines is idle.\n\
+         - Idle: from the last key (plain mode: the last line) if no other follows within {} s.\n\
          - Away: the run is closed, suspended or in the background, or its clock is stopped.\n\
          - Simulation time belongs to none of these classes.\n\
          - A week decided in less than {} active seconds counts as implausibly fast.\n\
-         - Limits count active time.\n",
+         - Limits count all time of a session, also idle time and time away, except while the clock is stopped, a question is \
+         open, or days are simulated. An absence of {:.0} minutes or more ends a session; no limit counts it.\n",
         IDLE_TIMEOUT.as_secs(),
-        MIN_BREAK_SECONDS,
-        FAST_WEEK_SECONDS
+        FAST_WEEK_SECONDS,
+        SESSION_BREAK_SECONDS / 60.0
     )
 }
 

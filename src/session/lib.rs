@@ -37,7 +37,8 @@ pub use database::{
     RunDatabase, query_rejection, rows_to_json, unreadable_record_rejection, with_hidden_table_hint,
 };
 pub use figures::attendance::{
-    Attendance, AttendedWeek, FAST_WEEK_SECONDS, MIN_BREAK_SECONDS, TimeSpan, TimeSpent, TimeUse,
+    Attendance, AttendedWeek, FAST_WEEK_SECONDS, MIN_BREAK_SECONDS, SESSION_BREAK_SECONDS, TimeSpan,
+    TimeSpent, TimeUse,
 };
 pub use figures::changes::{Decisions, SettingChange};
 pub use figures::dashboard::DeliveredQuality;
@@ -87,9 +88,12 @@ pub use playback::Playback;
 pub use playback::position::{Chapter, PlaybackPosition, SeekResult, SeekTarget};
 pub use playback::record_view::RecordView;
 pub use python::PYTHON_DISABLED_MESSAGE;
+#[cfg(unix)]
+pub use python::confinement::{ScriptRestriction, restrict_scripts};
 pub use recording::RunLog;
 pub use recording::activity::{ActivityLog, IDLE_TIMEOUT, Interface, TIME_LIMIT_RATIONALE};
 pub use recording::folders::new_run_id;
+pub use recording::idle_watch::IdleWatch;
 pub use recording::machine::Machine;
 pub use recording::recorder::read_afterwards;
 pub use recording::session_clock::TimeLeft;

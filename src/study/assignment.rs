@@ -94,6 +94,11 @@ impl Assignment {
         self.rows.iter().find(|place| place.label == label)
     }
 
+    /// Returns the seeds of all participants in ascending order, each once.
+    pub fn seeds(&self) -> Vec<u64> {
+        self.rows.iter().filter_map(|row| row.seed).collect::<BTreeSet<u64>>().into_iter().collect()
+    }
+
     /// Returns the contents of `assignment.csv`.
     pub fn to_csv(&self) -> String {
         let line = |place: &AssignmentRow| {

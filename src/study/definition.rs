@@ -4,12 +4,10 @@
 //! the first line of every run, so runs of different protocols cannot be mixed up.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use super::assignment::Assignment;
-use super::code::CodeCheck;
 use super::keys::load_seal_key;
 use super::questions::Questionnaire;
 use novamind_record::error::RunError;
@@ -116,24 +114,28 @@ pub struct Seeds {
     /// order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub block: Vec<u64>,
+    /// Number of secret seeds if the plan is `secret`. Each block of participants plays all of them in random order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub count: Option<u32>,
     /// Conditions, which are crossed with the seeds of a block. Conditions label and balance participants and do not
     /// change the program.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub conditions: Vec<String>,
-    /// Seed of the randomization if the plan is `blocks`; `None` for seed 1.
+    /// Seed of the randomization if the plan is `blocks` or `secret`; `None` for seed 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub draw: Option<u64>,
 }
 
 impl Seeds {
-    /// Returns the seeds that each block of participants plays.
+    /// Returns the seeds that each block of participants plays, if the protocol contains them.
     pub fn block_seeds(&self) -> Vec<u64> {
         if self.block.is_empty() { self.seed.into_iter().collect() } else { self.block.clone() }
     }
 
     /// Returns the number of participants in a block: the number of seeds multiplied by the number of conditions.
     pub fn cell_count(&self) -> usize {
-        self.block_seeds().len().max(1) * self.conditions.len().max(1)
+        let seeds = self.count.map_or(self.block_seeds().len(), |count| count as usize);
+        seeds.max(1) * self.conditions.len().max(1)
     }
 }
 
@@ -148,6 +150,8 @@ pub enum SeedPlan {
     Blocks,
     /// The experimenter writes `assignment.csv`.
     Assigned,
+    /// `study assign` draws random seeds, which only `assignment.csv` contains, and randomizes them within blocks.
+    Secret,
 }
 
 /// The practice run, in which participants learn the controls.
@@ -322,15 +326,40 @@ impl Study {
         Ok(Study { folder, protocol, consent, questionnaires, assignment, digest, seal_key })
     }
 
+    /// Returns the seeds that each block of participants plays. Secret seeds are read from the assignment.
+    pub fn block_seeds(&self) -> Vec<u64> {
+        match (self.protocol.seeds.plan, &self.assignment) {
+            (SeedPlan::Secret, Some(assignment)) => assignment.seeds(),
+            _ => self.protocol.seeds.block_seeds(),
+        }
+    }
+
+    /// Returns a commitment to the secret seeds, or `None` if the plan is another one. The commitment can be published before
+    /// the study. Anyone who receives the seeds later can compute it again. It takes long to compute, so it cannot be used
+    /// to find the seeds.
+    pub fn seed_commitment(&self) -> Option<String> {
+        let seeds: Vec<String> = match self.protocol.seeds.plan {
+            SeedPlan::Secret => self.block_seeds().iter().map(u64::to_string).collect(),
+            _ => return None,
+        };
+        Some(CodeDigest::from_code(&seeds.join(","), &self.protocol.name).as_str().to_owned())
+    }
+
+    /// Returns a warning if a participant who has the program can find a seed of the sessions by trying all small numbers.
+    pub fn guessable_seeds_warning(&self) -> Option<String> {
+        let assigned = self.assignment.iter().flat_map(|assignment| assignment.seeds());
+        let seeds = self.protocol.seeds.block_seeds().into_iter().chain(assigned);
+        seeds.min().filter(|seed| *seed < 1 << 32)?;
+        Some(
+            "a seed of the sessions is below 4,294,967,296: a participant who has the program can try all such seeds, compare \
+             their first weeks with the session, and rehearse it. Use [seeds] plan = \"secret\""
+                .to_owned(),
+        )
+    }
+
     /// Returns the first digits of the study's digest, for messages.
     pub fn short_digest(&self) -> &str {
         shorten_digest(&self.digest)
-    }
-
-    /// Returns a function that checks the experimenter's code, or `None` if the protocol has no code.
-    pub fn code_check(&self) -> Option<CodeCheck> {
-        let digest = self.protocol.access.code.clone()?;
-        Some(Arc::new(move |code: &str| digest.matches(code)))
     }
 
     /// Returns the rules that apply in the sessions of the study.
@@ -366,11 +395,6 @@ impl Protocol {
         .collect()
     }
 
-    /// Returns whether a code grants the experimenter's access. Returns `false` if the protocol has no code.
-    pub fn accepts_code(&self, code: Option<&str>) -> bool {
-        matches!((&self.access.code, code), (Some(digest), Some(code)) if digest.matches(code))
-    }
-
     /// Parses the text of `study.toml`. `source` is the name of the file in error messages.
     ///
     /// # Errors
@@ -399,6 +423,16 @@ impl Protocol {
             }
             SeedPlan::Blocks if self.seeds.block.is_empty() => {
                 return Err(("seeds", "plan \"blocks\" needs block = [seeds]".to_owned()));
+            }
+            SeedPlan::Secret if self.seeds.count.is_none_or(|count| !(1..=1000).contains(&count)) => {
+                return Err(("seeds", "plan \"secret\" needs count = N, from 1 to 1000".to_owned()));
+            }
+            SeedPlan::Secret if !self.seeds.block_seeds().is_empty() => {
+                let problem = "plan \"secret\" draws the seeds itself: leave out seed and block";
+                return Err(("seeds", problem.to_owned()));
+            }
+            plan if plan != SeedPlan::Secret && self.seeds.count.is_some() => {
+                return Err(("seeds.count", "only plan \"secret\" has count: leave it out".to_owned()));
             }
             _ => {}
         }

@@ -24,10 +24,17 @@ pub struct DueQuestion {
 }
 
 impl Study {
+    /// Returns whether the participant answers questions after the end of a run.
+    pub fn has_final_questions(&self, session: &Session) -> bool {
+        let is_final = |questionnaire: &Questionnaire| {
+            questionnaire.when == Occasion::End && !questionnaire.questions.is_empty()
+        };
+        is_session_of_study(session) && self.questionnaires.iter().any(is_final)
+    }
+
     /// Returns the questions that are due in a run, in order. A practice run has no questions.
     pub fn due_questions(&self, session: &Session) -> Vec<DueQuestion> {
-        let is_session = session.manifest().study.as_ref().is_some_and(|stamp| !stamp.practice);
-        if !is_session {
+        if !is_session_of_study(session) {
             return Vec::new();
         }
         let asked = self.questionnaires.iter().flat_map(|questionnaire| {
@@ -53,6 +60,10 @@ impl Study {
             })
             .collect()
     }
+}
+
+fn is_session_of_study(session: &Session) -> bool {
+    session.manifest().study.as_ref().is_some_and(|stamp| !stamp.practice)
 }
 
 /// Returns the occasions on which a questionnaire has become due in a run.

@@ -16,7 +16,7 @@ mod withdrawal;
 
 pub use assignment::{ASSIGNMENT_FILE, Assignment, AssignmentRow};
 pub use audit::{AuditFinding, AuditReport, FindingKind, RunFacts, audit_study};
-pub use code::CodeCheck;
+pub use code::{CodeCheck, CodeOutcome, MIN_CODE_CHARACTERS};
 pub use collection::{CollectNote, CollectedRuns, FoundRun, FoundVisit, collect_runs, missing_participants};
 pub use definition::{CodeDigest, PracticeOffer, Protocol, STUDY_FILE, SeedPlan, Study};
 pub use due_questions::DueQuestion;
@@ -25,11 +25,12 @@ pub use keys::{
     load_seal_key,
 };
 pub use novamind_record::folder::configuration::CONSENT_FILE;
-pub use participant_session::{DECLINED_NOTICE, NextStep, ParticipantSession};
+pub use participant_session::{
+    CLOSE_WINDOW_NOTICE, DECLINED_NOTICE, NextStep, ParticipantSession, RETURN_LATER_NOTICE,
+};
 pub use questions::{AnswerFormat, Occasion, Question, Questionnaire};
 pub use remarks::{REMARKS_FILE, Remark, read_remarks, write_remark};
 pub use session_status::{SessionState, SessionStatus, session_statuses};
 pub use visit_log::{
     VISITS_FILE, VisitEvent, VisitLine, VisitSummary, has_visited, read_study_visits, read_visits,
-    record_rejected_code,
 };

@@ -23,6 +23,13 @@ use novamind_session::{Access, NewRun, Session, Storage, StudyOptions};
 pub const DECLINED_NOTICE: &str = "You did not agree. Kept: your label, the time of your visit, and that you did not agree. Nothing else \
                             was recorded.";
 
+/// Message on the last page of a hosted session.
+pub const CLOSE_WINDOW_NOTICE: &str = "Everything is saved. You can close this window.";
+
+/// Message to a participant of a hosted session who can continue later.
+pub const RETURN_LATER_NOTICE: &str =
+    "To continue later, open your link again, or connect again in the same way.";
+
 /// The visit of a participant who has entered a valid label.
 #[derive(Debug, Clone)]
 pub struct ParticipantSession {
@@ -178,7 +185,7 @@ impl ParticipantSession {
         let assigned_seed = self.assignment.as_ref().and_then(|place| place.seed);
         let seed = match protocol.seeds.plan {
             SeedPlan::One => protocol.seeds.seed,
-            SeedPlan::Blocks | SeedPlan::Assigned => assigned_seed.or(protocol.seeds.seed),
+            SeedPlan::Blocks | SeedPlan::Assigned | SeedPlan::Secret => assigned_seed.or(protocol.seeds.seed),
         };
         let (seed, scenario, days, cash) = match practice {
             true => (Some(protocol.practice.seed), &protocol.practice.scenario, protocol.practice.days, None),

@@ -30,6 +30,9 @@ pub struct SessionStatus {
     pub days: u32,
     /// Seconds since the last line of the trajectory.
     pub quiet_seconds: f64,
+    /// Seconds since the run was created.
+    #[serde(skip)]
+    pub elapsed_seconds: f64,
     /// Problems with the record: damage, or the last failure to save.
     pub problems: Vec<String>,
 }
@@ -83,6 +86,7 @@ fn session_status(folder: &Path, manifest: &Manifest) -> SessionStatus {
         day: lines.iter().rev().find(|line| line.closes_days()).map_or(0, |line| line.day),
         days: manifest.days,
         quiet_seconds: quiet,
+        elapsed_seconds: (parse_seconds(&now()) - parse_seconds(&manifest.created)).max(0.0),
         problems,
     }
 }

@@ -91,7 +91,7 @@ pub fn has_visited(study: &Study, runs: &Path, label: &str) -> bool {
 }
 
 /// Records that a wrong code was entered instead of the experimenter's code.
-pub fn record_rejected_code(study: &Study, runs: &Path) {
+pub(super) fn record_rejected_code(study: &Study, runs: &Path) {
     VisitLog::new(runs, study).append("", VisitEvent::CodeRefused);
 }
 

@@ -12,7 +12,7 @@ use novamind_record::trajectory::record::Limit;
 use novamind_report::RunReport;
 use novamind_report::class::ClassDisplayOptions;
 use novamind_session::{DraftTexts, PlaybackPosition, SettingChange, TimeLeft, WeekResult};
-use novamind_study::{DueQuestion, NextStep};
+use novamind_study::{CodeOutcome, DueQuestion, NextStep};
 use novamind_tools::{Answer, Rejection, ToolId};
 
 /// A message that wakes the console.
@@ -167,8 +167,10 @@ pub enum StudyResponse {
     QuestionsDue(Vec<DueQuestion>),
     /// Answers were recorded. Contains the questions that are due now.
     AnswersRecorded(Vec<DueQuestion>),
-    /// Whether the entered experimenter code is correct; `None` if the study has no code.
-    CodeChecked(Option<bool>),
+    /// The entered experimenter code was checked.
+    CodeChecked(CodeOutcome),
+    /// The experimenter code that was entered to start the clock was checked.
+    LimitCodeChecked(CodeOutcome),
     /// Reading or writing failed. The message names the data that is safe.
     Failed(String),
 }

@@ -124,8 +124,10 @@ pub enum StudyRequest {
     SubmitAnswers(Vec<GivenAnswer>),
     /// The participant has confirmed the withdrawal from the study.
     Withdraw,
-    /// Check the experimenter code that was entered.
+    /// Check the experimenter code that was entered, and give access to the start menu.
     CheckCode(String),
+    /// Check the experimenter code that was entered to start the clock after a time limit has stopped it.
+    LiftLimit(String),
 }
 
 /// The participant's answer to a question, with details of how it was entered.

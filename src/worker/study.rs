@@ -5,7 +5,7 @@ use crate::message::{Response, StudyResponse};
 use crate::request::{GivenAnswer, StudyRequest};
 use novamind_record::consent::ConsentAgreement;
 use novamind_record::error::RunError;
-use novamind_study::{DueQuestion, NextStep, ParticipantSession, Study, record_rejected_code};
+use novamind_study::{CodeOutcome, DueQuestion, NextStep, ParticipantSession, Study};
 
 pub(super) struct ActiveStudy {
     pub(super) study: Study,
@@ -70,19 +70,22 @@ impl SessionThread {
             StudyRequest::SubmitAnswers(answers) => self.record_answers(&answers),
             StudyRequest::Withdraw => self.erase_participant(),
             StudyRequest::CheckCode(code) => {
-                let right = self.study.as_ref().and_then(|state| {
-                    let protocol = &state.study.protocol;
-                    protocol.access.code.is_some().then(|| protocol.accepts_code(Some(&code)))
-                });
-                if right != Some(true) {
-                    self.study.iter().for_each(|state| record_rejected_code(&state.study, &self.runs_folder));
-                }
-                if right == Some(true) {
+                let outcome = self.check_code(&code);
+                if outcome == CodeOutcome::Right {
                     (self.study, self.lists_all_participants) = (None, true);
                 }
-                self.send_response(Response::Study(StudyResponse::CodeChecked(right)));
+                self.send_response(Response::Study(StudyResponse::CodeChecked(outcome)));
+            }
+            StudyRequest::LiftLimit(code) => {
+                let outcome = self.check_code(&code);
+                self.send_response(Response::Study(StudyResponse::LimitCodeChecked(outcome)));
             }
         }
+    }
+
+    fn check_code(&self, code: &str) -> CodeOutcome {
+        let study = self.study.as_ref();
+        study.map_or(CodeOutcome::NoCode, |state| state.study.check_code(&self.runs_folder, code))
     }
 
     fn with_study(&mut self, work: impl FnOnce(&mut ActiveStudy)) {

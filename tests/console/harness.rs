@@ -52,6 +52,7 @@ impl Console {
             runs: runs.to_owned(),
             resume_command: "novamind --run latest".to_owned(),
             lists_all_participants: false,
+            hosted: false,
             opponents: novamind::lab::play_opponents,
         }
     }

@@ -6,6 +6,7 @@ mod curve;
 mod figures;
 mod focus;
 mod harness;
+mod hosted;
 mod keys;
 mod lessons;
 mod monkey;

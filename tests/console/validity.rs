@@ -35,12 +35,15 @@ struct Element {
     content: &'static str,
     baseline: Expected,
     study: Expected,
+    /// A hosted session of a study.
+    hosted: Expected,
     sandbox: Expected,
     /// A finished baseline run, opened again.
     finished: Expected,
 }
 
 const NO_RESIMULATION: Expected = Refused("not available in an unfinished baseline");
+const NOT_HOSTED: Expected = Refused("has no function here");
 
 const ELEMENTS: [Element; 9] = [
     Element {
@@ -49,6 +52,7 @@ const ELEMENTS: [Element; 9] = [
         content: "residual",
         baseline: NO_RESIMULATION,
         study: NO_RESIMULATION,
+        hosted: NOT_HOSTED,
         sandbox: Shown("residual"),
         finished: Shown("residual"),
     },
@@ -58,6 +62,7 @@ const ELEMENTS: [Element; 9] = [
         content: "You made no decisions",
         baseline: NO_RESIMULATION,
         study: NO_RESIMULATION,
+        hosted: NOT_HOSTED,
         sandbox: Shown("You made no decisions in week"),
         finished: Shown("What if, decisions of week"),
     },
@@ -67,6 +72,7 @@ const ELEMENTS: [Element; 9] = [
         content: "true values",
         baseline: Shown("estimates of day"),
         study: Shown("estimates of day"),
+        hosted: Shown("estimates of day"),
         sandbox: Shown("estimates of day"),
         finished: Recorded("true values", "curve S1"),
     },
@@ -76,6 +82,7 @@ const ELEMENTS: [Element; 9] = [
         content: "reputation",
         baseline: Refused("x-ray is available in debug runs and in runs that have ended"),
         study: Refused("x-ray is available in debug runs and in runs that have ended"),
+        hosted: NOT_HOSTED,
         sandbox: Refused("x-ray is available in debug runs and in runs that have ended"),
         finished: Shown("X-ray"),
     },
@@ -85,6 +92,7 @@ const ELEMENTS: [Element; 9] = [
         content: "",
         baseline: Shown("Action needed"),
         study: Shown("Action needed"),
+        hosted: Shown("Action needed"),
         sandbox: Shown("Action needed"),
         finished: Shown("Action needed"),
     },
@@ -94,6 +102,7 @@ const ELEMENTS: [Element; 9] = [
         content: "own 4711",
         baseline: Refused("own commands are closed in an unfinished baseline run"),
         study: Refused("own commands are closed in a study"),
+        hosted: NOT_HOSTED,
         sandbox: Shown("own 4711"),
         finished: Shown("own 4711"),
     },
@@ -103,6 +112,7 @@ const ELEMENTS: [Element; 9] = [
         content: "rows: 2",
         baseline: Refused("own commands are closed in an unfinished baseline run"),
         study: Refused("own commands are closed in a study"),
+        hosted: NOT_HOSTED,
         sandbox: Shown("rows: 2"),
         finished: Shown("rows: 2"),
     },
@@ -112,6 +122,7 @@ const ELEMENTS: [Element; 9] = [
         content: "Execute 1 line?",
         baseline: Refused("own commands are closed in an unfinished baseline run"),
         study: Refused("own commands are closed in a study"),
+        hosted: NOT_HOSTED,
         sandbox: Shown("Execute 1 line?"),
         finished: Shown("Execute 1 line?"),
     },
@@ -121,6 +132,7 @@ const ELEMENTS: [Element; 9] = [
         content: "runs SELECT",
         baseline: Refused("unavailable (own commands"),
         study: Refused("no match"),
+        hosted: Refused("no match"),
         sandbox: Shown("runs SELECT"),
         finished: Shown("runs SELECT"),
     },
@@ -131,6 +143,7 @@ const ELEMENTS: [Element; 9] = [
 enum RunMode {
     Baseline,
     Study,
+    Hosted,
     Sandbox,
     Finished,
 }
@@ -140,6 +153,7 @@ impl Element {
         match mode {
             RunMode::Baseline => self.baseline,
             RunMode::Study => self.study,
+            RunMode::Hosted => self.hosted,
             RunMode::Sandbox => self.sandbox,
             RunMode::Finished => self.finished,
         }
@@ -247,16 +261,27 @@ fn finished_baseline_run_shows_everything_and_records_inspections() {
     check_mode(RunMode::Finished);
 }
 
-#[test]
-fn study_shows_only_what_agents_have() {
-    let (lab, folder) = (StudyHome::new(), tempfile::tempdir().expect("a folder"));
-    std::fs::remove_file(lab.folder().join("questions/2-week.toml")).expect("removed");
-    let mut console = lab.open_console_with(configuration_in(folder.path()), WINDOW);
-    console.press("'P01' enter end y enter 4 enter enter");
+/// Plays the first week of P01 and compares every element with the table.
+fn check_study(lab: &StudyHome, mut console: Console, keys: &str, mode: RunMode) {
+    console.press(keys);
     console.advance_week();
     console.press("esc");
     let run = lab.participant_runs("P01").remove(0);
     for element in &ELEMENTS {
-        check_element(&mut console, &run, element, RunMode::Study);
+        check_element(&mut console, &run, element, mode);
     }
+}
+
+#[test]
+fn study_shows_only_what_agents_have() {
+    let (lab, folder) = (StudyHome::without_week_questions(), tempfile::tempdir().expect("a folder"));
+    let console = lab.open_console_with(configuration_in(folder.path()), WINDOW);
+    check_study(&lab, console, "'P01' enter end y enter 4 enter enter", RunMode::Study);
+}
+
+#[test]
+fn hosted_session_shows_only_what_agents_have_and_starts_no_program() {
+    let (lab, folder) = (StudyHome::without_week_questions(), tempfile::tempdir().expect("a folder"));
+    let console = lab.open_hosted_console("P01", configuration_in(folder.path()), WINDOW);
+    check_study(&lab, console, "end y enter 4 enter enter", RunMode::Hosted);
 }

@@ -401,8 +401,12 @@ fn final_page_shows_only_permitted_results() {
                 run_with_input(&mut program, lines)
             };
             visit(&format!("{label}\nyes\n5\n{WEEKS}4\n2\nquit\n"));
-            let end = visit(&format!("{label}\nnext \"e\" naive\n"));
+            let end = visit(&format!("{label}\nnext \"e\" naive\nI tried to grow.\n1\n"));
             assert_eq!(end.exit_code, 0, "{}", end.stderr);
+            // The result follows the last question.
+            let asked = end.stdout.find("What did you try to do").expect("the question");
+            let result = end.stdout.find("horizon");
+            assert!(result.is_none_or(|result| asked < result), "{}", end.stdout);
             // The start of the output shows the company before the last week. Only the text after it reports the end.
             let (_, after) = match json {
                 true => end.stdout.split_once('\n').expect("the greeting"),
@@ -422,9 +426,13 @@ fn final_page_shows_only_permitted_results() {
                 assert_eq!(shown_words, [false; 5], "{after}");
                 assert!(!end.stdout.contains("day 35 ·") || json, "{}", end.stdout);
             }
-            // A participant who returns to the questions is shown the result only if the study permits it.
-            let program_output = visit(&format!("{label}\n"));
-            assert_eq!(program_output.stdout.contains('$'), shows, "{results}:\n{}", program_output.stdout);
+            // A participant who returns to the questions is shown the result after them, if the study permits it.
+            let label = format!("{label}-back");
+            visit(&format!("{label}\nyes\n5\n{WEEKS}4\n2\nnext \"e\" naive\n"));
+            let unanswered = visit(&format!("{label}\n"));
+            assert!(!unanswered.stdout.contains('$'), "{results}:\n{}", unanswered.stdout);
+            let answered = visit(&format!("{label}\nI tried to grow.\n1\n"));
+            assert_eq!(answered.stdout.contains('$'), shows, "{results}:\n{}", answered.stdout);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Preparation and supervision of a study: the commands `check`, `assign`, `watch` and `protocol`.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::PathBuf;
 
@@ -199,8 +200,8 @@ fn protocol_lists_randomization_and_limits() {
         "Conditions: A, B. They label and balance participants. The program is the same".to_owned(),
         "The practice uses the same rules".to_owned(),
         "| The practice starts with the tour (console) | yes |".to_owned(),
-        "| Active minutes per week of the company | 20 |".to_owned(),
-        "| Active minutes per session | no limit |".to_owned(),
+        "| Minutes per week of the company | 20 |".to_owned(),
+        "| Minutes per session | no limit |".to_owned(),
         "warned | 3 |".to_owned(),
         "week limit: the week is filed with naive forecasts".to_owned(),
         "if no other follows within 60 s".to_owned(),
@@ -212,4 +213,50 @@ fn protocol_lists_randomization_and_limits() {
     assert!(
         lab.run("protocol", &[]).stdout.contains("not as `novamind study assign` draws them with seed 5")
     );
+}
+
+#[test]
+fn secret_seeds_are_drawn_once_and_kept_by_added_participants() {
+    let lab = StudyHome::new();
+    lab.edit("plan = \"one\"", "plan = \"secret\"\nconditions = [\"A\", \"B\"] #");
+    lab.edit("seed = 2_718\n", "count = 2\n");
+    lab.run("assign", &["--participants", "3"]).assert_fails(2, &["assign at least 4 participants"]);
+    assert_eq!(lab.run("assign", &["--participants", "4"]).exit_code, 0);
+    let first = lab.assignment();
+    let seeds = |text: &str| -> BTreeSet<u64> {
+        let seed = |line: &str| line.split(',').nth(2).expect("a seed").parse().expect("a number");
+        text.lines().skip(1).map(seed).collect()
+    };
+    assert_eq!(seeds(&first).len(), 2);
+    assert!(seeds(&first).iter().all(|seed| (1 << 32..1 << 63).contains(seed)), "{first}");
+    assert_eq!(lab.run("assign", &["--add", "5"]).exit_code, 0);
+    let added = lab.assignment();
+    assert!(added.starts_with(&first) && seeds(&added) == seeds(&first), "{first}\n{added}");
+    let protocol = lab.run("protocol", &[]).stdout;
+    assert!(
+        protocol.contains("plays 2 secret seeds in random order. Commitment to the seeds: pilot:"),
+        "{protocol}"
+    );
+    assert!(seeds(&first).iter().all(|seed| !protocol.contains(&seed.to_string())), "{protocol}");
+    // Another draw has other seeds, and so another commitment.
+    fs::remove_file(lab.path("pilot/assignment.csv")).expect("removed");
+    assert_eq!(lab.run("assign", &["--participants", "4"]).exit_code, 0);
+    assert!(seeds(&lab.assignment()).is_disjoint(&seeds(&first)));
+    lab.edit("count = 2", "count = 2\nseed = 7");
+    lab.run("check", &[]).assert_fails(3, &["leave out seed and block"]);
+}
+
+#[test]
+fn small_seeds_of_a_hosted_study_are_noted() {
+    let lab = StudyHome::new();
+    assert!(!lab.run("check", &[]).stdout.contains("below 4,294,967,296"));
+    fs::create_dir(lab.path("pilot/host")).expect("a folder");
+    let checked = lab.run("check", &[]);
+    assert!(
+        checked.stdout.contains("note  seeds       a seed of the sessions is below 4,294,967,296"),
+        "{}",
+        checked.stdout
+    );
+    lab.edit("seed = 2_718", "seed = 4_294_967_296");
+    assert!(!lab.run("check", &[]).stdout.contains("below 4,294,967,296"));
 }

@@ -247,15 +247,15 @@ impl<'a> ConsoleParticipant<'a> {
         self.add_expected_line("call", "set_prices", "form", None);
     }
 
-    /// Reads the final page for a number of seconds.
+    /// Reads the final page for a number of seconds and closes it, which closes the run.
     pub fn read_final_page(&mut self, seconds: u64) {
         self.wait(seconds);
         self.press_unrecorded("enter");
         self.add_expected_line("dialog", "final page", "cancelled", Some(seconds * 1000));
     }
 
-    /// Closes the final page. The console then asks the next participant for a label.
-    pub fn close_final_page(mut self) -> Diary {
+    /// Closes the last page. The console then asks the next participant for a label.
+    pub fn finish(mut self) -> Diary {
         self.close_view();
         self.record_leaving("quit");
         self.press_unrecorded("enter");

@@ -9,17 +9,24 @@ mod diary;
 #[allow(dead_code, reason = "the console tests use the rest")]
 mod harness;
 mod lab;
+mod limits;
 mod plain;
 mod scripts;
 #[path = "../support/mod.rs"]
 mod support;
 mod tables;
 
+use std::sync::Mutex;
+
 use lab::StudyLab;
 use support::python::recompute_measures;
 
+/// Held by tests that control the clock of the whole process.
+static CLOCK: Mutex<()> = Mutex::new(());
+
 #[test]
 fn tables_match_twelve_scripted_participants() {
+    let _clock = CLOCK.lock();
     let lab = StudyLab::new();
     let mut diaries = scripts::play_first_machine(&lab);
     diaries.extend(scripts::play_second_machine(&lab));

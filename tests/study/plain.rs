@@ -125,7 +125,11 @@ impl<'a> PlainParticipant<'a> {
     pub fn play_week(&mut self, why: &str) {
         self.send_line(&format!("next \"{why}\" naive"));
         let week = self.diary.weeks.len() + 1;
-        self.wait_for(&format!("week {week} done"));
+        // The result of the last week follows the last questions.
+        match week as u32 == WEEKS {
+            true => self.wait_for("please answer the last questions"),
+            false => self.wait_for(&format!("week {week} done")),
+        }
         self.add_expected_line("advance", "plain", "");
         self.add_expected_line("week", "", "");
         self.diary.weeks.push((why.to_owned(), true));
@@ -178,8 +182,10 @@ impl<'a> PlainParticipant<'a> {
 
     /// Completes the study.
     pub fn finish(mut self) -> Diary {
+        self.wait_for("run ended");
         self.wait_for("Thank you");
         self.add_expected_line("session", "closed", "quit");
+        self.send_line("");
         assert_eq!(self.child.wait().expect("the program ends").code(), Some(0));
         self.diary
     }

@@ -106,9 +106,9 @@ fn finish_console_session(mut player: ConsoleParticipant<'_>) -> Diary {
             player.answer(WEEK, "2 enter", "second", 5);
         }
     }
-    player.read_final_page(5);
     player.answer(END, "'guessed' tab", "guessed", 6);
-    player.close_final_page()
+    player.read_final_page(5);
+    player.finish()
 }
 
 /// Plays the scripts of the second machine: participants decline, withdraw, mistype the label, and lose the terminal.
@@ -155,7 +155,7 @@ fn play_with_hang_up(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     player.agree(&[], 20);
     player.start_run();
     player.answer(QUESTION_BEFORE_FIRST_WEEK, "3 enter", "3", 4);
-    let mut player = player.hang_up_with_text(lab, "m2", "half", 1200);
+    let mut player = player.hang_up_with_text(lab, "m2", "half", 2400);
     player.answer(BREAK, "1 enter", "no", 3);
     finish_console_session(player)
 }

@@ -56,6 +56,7 @@ fn settings(bench: &BenchContext) -> Result<Settings, BenchError> {
         runs: bench.scratch_folder.clone(),
         resume_command: String::new(),
         lists_all_participants: false,
+        hosted: false,
         opponents: play_opponents,
     })
 }

@@ -63,6 +63,7 @@ pub fn record_cast(
         runs: context.runs_folder()?,
         resume_command: context.resume_command(),
         lists_all_participants: false,
+        hosted: false,
         opponents: play_opponents,
     };
     let mut console = Headless::new(settings, options.size);

@@ -1,5 +1,6 @@
 //! `novamind study assign`: assigns participants to conditions and writes `assignment.csv`.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -7,7 +8,7 @@ use clap::Args;
 use crate::cli::{Failure, print};
 use crate::record::error::RunError;
 use crate::record::files::write_atomically;
-use novamind_study::{ASSIGNMENT_FILE, Assignment, Protocol, STUDY_FILE};
+use novamind_study::{ASSIGNMENT_FILE, Assignment, Protocol, STUDY_FILE, SeedPlan};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -49,7 +50,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         (add, there) => (there, add.or(options.participants).unwrap_or_default()),
     };
     let labels = new_labels(there.as_ref(), more, &options.prefix);
-    let (seeds, cells) = (protocol.seeds.block_seeds(), protocol.seeds.cell_count());
+    let cells = protocol.seeds.cell_count();
+    let seeds = block_seeds(&protocol, there.as_ref(), labels.len())?;
     let made = Assignment::randomize_in_blocks(&labels, &seeds, &protocol.seeds.conditions, draw);
     if let Some(there) = &there
         && !made.rows.starts_with(&there.rows)
@@ -76,6 +78,47 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             String::new()
         }
     ))
+}
+
+/// Returns the seeds of a block. Secret seeds are drawn for a new assignment, and read from an existing one.
+fn block_seeds(
+    protocol: &Protocol,
+    there: Option<&Assignment>,
+    participants: usize,
+) -> Result<Vec<u64>, Failure> {
+    let count = protocol.seeds.count.unwrap_or_default() as usize;
+    if protocol.seeds.plan != SeedPlan::Secret {
+        return Ok(protocol.seeds.block_seeds());
+    }
+    let cells = protocol.seeds.cell_count();
+    if participants < cells {
+        return Err(Failure::usage(format!(
+            "a block has {cells} participants, and {ASSIGNMENT_FILE} has to contain every secret seed: assign at least {cells} \
+             participants"
+        )));
+    }
+    match there {
+        Some(assignment) if assignment.seeds().len() == count => Ok(assignment.seeds()),
+        Some(assignment) => Err(Failure::failed(format!(
+            "{ASSIGNMENT_FILE} has {} seeds, and {STUDY_FILE} has count = {count}: restore the files. Nothing was changed",
+            assignment.seeds().len()
+        ))),
+        None => draw_secret_seeds(count),
+    }
+}
+
+/// Draws different random seeds. They have 63 bits, because numbers in TOML files and in SQLite have a sign.
+fn draw_secret_seeds(count: usize) -> Result<Vec<u64>, Failure> {
+    let mut seeds = BTreeSet::new();
+    while seeds.len() < count {
+        let mut bytes = [0; 8];
+        getrandom::fill(&mut bytes).map_err(|error| {
+            Failure::failed(format!("the system provides no random numbers: {error}; nothing was written"))
+        })?;
+        let seed = u64::from_le_bytes(bytes) >> 1;
+        seeds.extend(Some(seed).filter(|seed| *seed >= 1 << 32));
+    }
+    Ok(seeds.into_iter().collect())
 }
 
 /// Returns the seed of the randomization. Returns an error if the option contradicts the protocol.

@@ -6,16 +6,23 @@ use crossterm::event::{Event, KeyCode, KeyEventKind, KeyModifiers, read};
 use crossterm::terminal::{disable_raw_mode, enable_raw_mode};
 
 use crate::cli::{Failure, print};
-use novamind_study::CodeDigest;
-
-const MIN_CODE_CHARACTERS: usize = 4;
+use novamind_study::{CodeDigest, MIN_CODE_CHARACTERS};
 
 /// Reads a code and prints the digest of the code. At a terminal, the code is typed twice and not shown.
 pub fn run() -> Result<(), Failure> {
-    let code = if io::stdin().is_terminal() { read_code_twice()? } else { read_first_line()? };
+    let code = read_new_code()?;
+    print(&format!("[access]\ncode = \"{}\"\n", CodeDigest::from_code(&code, &new_salt()).as_str()))
+}
+
+/// Reads a new code. At a terminal, the code is typed twice and not shown.
+pub(in crate::cli) fn read_new_code() -> Result<String, Failure> {
+    if io::stdin().is_terminal() { read_code_twice() } else { read_first_line() }
+}
+
+/// Returns a text that makes the digests of equal codes different.
+pub(in crate::cli) fn new_salt() -> String {
     let moment = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
-    let salt = format!("{:08x}", (moment.as_nanos() as u64 ^ u64::from(std::process::id()) << 32) as u32);
-    print(&format!("[access]\ncode = \"{}\"\n", CodeDigest::from_code(&code, &salt).as_str()))
+    format!("{:08x}", (moment.as_nanos() as u64 ^ u64::from(std::process::id()) << 32) as u32)
 }
 
 fn check_length(code: &str) -> Result<String, Failure> {
@@ -37,7 +44,7 @@ fn read_first_line() -> Result<String, Failure> {
 fn read_code_twice() -> Result<String, Failure> {
     let code = check_length(&prompt_hidden("Code (not shown): ")?)?;
     if prompt_hidden("Repeat: ")?.trim() != code {
-        return Err(Failure::usage("the two codes differ; nothing was printed"));
+        return Err(Failure::usage("the two codes differ; nothing was saved"));
     }
     Ok(code)
 }

@@ -4,7 +4,7 @@ mod anonymise;
 mod assign;
 mod audit;
 mod check;
-mod code;
+pub(super) mod code;
 mod collect;
 mod key;
 mod new;

@@ -8,6 +8,7 @@ use crate::effect::Effect;
 use crate::screens::menu::StartMenu;
 use novamind_record::trajectory::record::DetachCause;
 use novamind_session::Access;
+use novamind_study::CLOSE_WINDOW_NOTICE;
 use novamind_worker::Job;
 use novamind_worker::request::Request;
 
@@ -93,6 +94,13 @@ impl App {
         self.stop_seeking();
         // Leaving a run returns a participant to the study.
         let returns_to_study = self.has_participant() && matches!(self.stage, Stage::Run(_));
+        // The last page of a hosted session is shown before the program exits.
+        if self.is_hosted
+            && closing == ExitTarget::Shell
+            && matches!(&self.stage, Stage::Study(page) if !page.is_last_page())
+        {
+            return self.continue_after_run(None);
+        }
         let quits = closing == ExitTarget::Shell;
         let closing = if returns_to_study && quits { ExitTarget::Menu } else { closing };
         self.detach_from_run();
@@ -127,6 +135,9 @@ impl App {
                 return;
             }
         };
+        if self.is_hosted {
+            return self.orders.push(Order::Exit(code, Some(CLOSE_WINDOW_NOTICE.to_owned())));
+        }
         let farewell = self.run().filter(|run| run.playback.is_none()).map(|run| {
             let company = &run.company.observation;
             let end = match company.ended {

@@ -13,6 +13,7 @@ use crate::dialogs::text_dialog::TextDialog;
 use crate::dialogs::week_report::WeekReportDialog;
 use crate::dialogs::{Dialog, DialogResponse};
 use crate::effect::Effect;
+use crate::hosted;
 use crate::keys::KeyMeaning;
 use novamind_tui::canvas::Click;
 use novamind_tui::chord::Chord;
@@ -214,6 +215,9 @@ impl App {
     pub(super) fn handle_action(&mut self, action: Action) {
         let global = action.entry().scope == Scope::Global;
         self.edit_source = EditSource::Filled;
+        if !self.keys.is_available(action) {
+            return self.show_error(format!("{}: {}", action.entry().title, hosted::NOT_AVAILABLE));
+        }
         match action {
             Action::Quit => return self.quit(),
             Action::Redraw => return self.orders.push(Order::Redraw),

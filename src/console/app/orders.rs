@@ -5,6 +5,7 @@ use crate::context::ScreenId;
 use crate::dialogs::confirm::ConfirmDialog;
 use crate::dialogs::text_dialog::TextDialog;
 use crate::effect::Effect;
+use crate::hosted;
 use novamind_record::trajectory::record::TextEditOutcome;
 use novamind_session::SeekTarget;
 use novamind_worker::Job;
@@ -157,7 +158,8 @@ impl App {
             Effect::TryStepAgain(step) => self.confirm_retry(step),
             Effect::ShowDebrief => self.open_debrief(),
             Effect::StartTour => self.start_tour(),
-            Effect::StartStudy(study) => self.start_study(study),
+            Effect::StartStudy(study) => self.start_study(study, None),
+            Effect::StartHostedSession(study, label) => self.start_study(study, Some(label)),
             Effect::ResolveDraftOffer(restore) => self.resolve_draft_offer(restore),
             Effect::StopClock(reason) => self.stop_clock(reason, false),
             Effect::LeaveNow => self.exit_run(ExitTarget::Shell),
@@ -227,6 +229,9 @@ impl App {
     }
 
     pub(super) fn write(&mut self, files: Vec<(&str, Vec<u8>)>) {
+        if self.is_hosted {
+            return self.show_error(format!("files: {}", hosted::NOT_AVAILABLE));
+        }
         let folder = self.run().and_then(|run| run.company.folder.clone());
         match folder {
             Some(folder) => {

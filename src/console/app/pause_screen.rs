@@ -7,18 +7,22 @@ use unicode_width::UnicodeWidthStr;
 use super::{App, ExitTarget, Order, Stage};
 use crate::action::{Action, Scope};
 use crate::dialogs::pause_reason::PauseReasonDialog;
+use crate::effect::Effect;
 use crate::keys::KeyBindings;
+use novamind_study::CodeOutcome;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::chord::Chord;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 use novamind_worker::Job;
+use novamind_worker::request::{Request, StudyRequest};
 
 /// The screen shown while the clock is stopped.
 pub struct PauseScreen {
     /// The field for the experimenter's code, if the clock can be started only with a code.
     code: Option<TextField>,
-    is_wrong_code: bool,
+    /// Reason why the last code was not accepted; empty while no code was rejected.
+    problem: String,
     by_limit: bool,
 }
 
@@ -44,8 +48,8 @@ impl App {
         self.stopwatch.pause();
         self.status = None;
         self.pending_chords.clear();
-        let code = self.code_check.as_ref().filter(|_| by_limit).map(|_| TextField::default());
-        self.pause_screen = Some(PauseScreen { code, is_wrong_code: false, by_limit });
+        let code = (by_limit && self.has_code).then(TextField::default);
+        self.pause_screen = Some(PauseScreen { code, problem: String::new(), by_limit });
         // The pause screen remains even if the event cannot be written.
         self.record(move |session| drop(session.activity().stop_clock(reason.as_deref())));
     }
@@ -78,20 +82,28 @@ impl App {
             && let Some(code) = &mut cover.code
         {
             code.handle_key(key);
-            cover.is_wrong_code = false;
+            cover.problem.clear();
         }
     }
 
     fn try_start_clock(&mut self) {
         let Some(cover) = &mut self.pause_screen else { return };
-        let right = match (&cover.code, &self.code_check) {
-            (Some(code), Some(check)) => check(code.text().trim()),
-            _ => true,
-        };
-        if right {
-            return self.start_clock();
+        match &mut cover.code {
+            Some(code) => {
+                let typed = std::mem::take(code).text().to_owned();
+                self.execute_effects(vec![Effect::Request(Request::Study(StudyRequest::LiftLimit(typed)))]);
+            }
+            None => self.start_clock(),
         }
-        (cover.code, cover.is_wrong_code) = (Some(TextField::default()), true);
+    }
+
+    /// Starts the clock after a limit if the code was right.
+    pub(super) fn handle_limit_code(&mut self, outcome: CodeOutcome) {
+        match (outcome, &mut self.pause_screen) {
+            (CodeOutcome::Right, Some(_)) => self.start_clock(),
+            (_, Some(cover)) => cover.problem = outcome.describe(),
+            (_, None) => {}
+        }
     }
 }
 
@@ -104,12 +116,12 @@ impl PauseScreen {
             true => "The time limit is reached.",
             false => "The clock is stopped.",
         };
-        let next = match (&self.code, self.is_wrong_code) {
+        let next = match (&self.code, self.problem.as_str()) {
             (None, _) => format!("{start} starts the clock · {quit} saves and quits"),
-            (Some(_), false) => {
+            (Some(_), "") => {
                 format!("The experimenter can start the clock with a code · {quit} saves and quits")
             }
-            (Some(_), true) => format!("Wrong code, try again · {quit} saves and quits"),
+            (Some(_), problem) => format!("{problem} · {quit} saves and quits"),
         };
         let row = Rect { y: area.y + area.height / 2, height: 1, ..area };
         draw_centered_text(canvas, Rect { y: row.y - 2, ..row }, why, Role::Header);

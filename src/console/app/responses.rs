@@ -19,6 +19,7 @@ use novamind_course::CollectedClass;
 use novamind_report::RunReport;
 use novamind_report::class::ClassDisplayOptions;
 use novamind_session::{SettingChange, WeekResult};
+use novamind_study::RETURN_LATER_NOTICE;
 use novamind_tools::Rejection;
 use novamind_tui::text::format_number;
 use novamind_worker::company::DisplayedCompany;
@@ -71,12 +72,21 @@ impl App {
             Response::DebugDaysSimulated(ran, company) => self.handle_debug_run(ran, company),
             Response::Closed(problem) => self.on_run_closed(problem),
             Response::Crashed(words) => {
+                if self.is_hosted {
+                    let text =
+                        format!("Internal error. All confirmed actions are saved. {RETURN_LATER_NOTICE}");
+                    return self.orders.push(Order::Exit(1, Some(text)));
+                }
                 let saved = self.run().map_or(String::new(), |run| match &run.company.folder {
                     Some(folder) => format!(" All confirmed actions are saved in {}.", folder.display()),
                     None => String::new(),
                 });
                 let text = format!("internal error: {words}.{saved} Resume with `{}`.", self.resume_command);
                 self.orders.push(Order::Exit(1, Some(text)));
+            }
+            Response::RecordLost(_) if self.is_hosted => {
+                let text = "The record of your session cannot be written. Please tell the experimenter.";
+                self.orders.push(Order::Exit(3, Some(text.to_owned())));
             }
             Response::RecordLost(words) => self.orders.push(Order::Exit(3, Some(words))),
             Response::QuerySaved(Ok((text, library))) => {
@@ -290,6 +300,9 @@ impl App {
         if report.is_none() {
             self.execute_effects(vec![Effect::Request(Request::BuildRunReport)]);
         }
+        if let Some(study_state) = &mut self.study {
+            study_state.has_shown_end = true;
+        }
         let page = FinalPage::new(report);
         let page = if self.has_participant() { page.for_participant() } else { page };
         self.push_layer(Layer::Dialog(Box::new(page)));
@@ -373,6 +386,7 @@ impl App {
         let hides_result = self.run().is_some_and(|run| run.company.rules.hides_result(ended.is_some()));
         self.show_status(if hides_result { "the run has ended".to_owned() } else { text });
         match ended {
+            Some(_) if self.has_due_questions() => self.show_status("the run has ended"),
             Some(_) => self.show_final_page(),
             None if self.show_lesson_week(before.as_ref()) => {}
             None => {

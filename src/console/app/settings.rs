@@ -24,6 +24,8 @@ pub struct Settings {
     pub resume_command: String,
     /// Whether the start menu lists the runs of all participants.
     pub lists_all_participants: bool,
+    /// Whether the session runs on a server, for a participant who uses only the screen.
+    pub hosted: bool,
     /// Function that plays the opponents of a run.
     pub opponents: PlayOpponentsFn,
 }

@@ -4,7 +4,7 @@ use super::{App, ExitTarget, Layer, Order, Stage};
 use crate::screens::menu::StartMenu;
 use crate::study_pages::questions::QuestionPage;
 use crate::study_pages::{StudyPage, StudyState};
-use novamind_study::{NextStep, Study};
+use novamind_study::{CodeOutcome, NextStep, Study};
 use novamind_worker::Job;
 use novamind_worker::message::StudyResponse;
 use novamind_worker::request::{Request, StudyRequest};
@@ -12,10 +12,12 @@ use novamind_worker::request::{Request, StudyRequest};
 const PARTICIPANT_REJECTION: &str = "not available in a study: only your own session is open";
 
 impl App {
-    pub(super) fn start_study(&mut self, study: Box<Study>) {
-        let study_state = StudyState::new(&study);
-        self.code_check = study.code_check();
-        self.stage = Stage::Study(Box::new(StudyPage::loading_page(&study_state.title)));
+    /// Starts a study. Without a label, participants enter their labels.
+    pub(super) fn start_study(&mut self, study: Box<Study>, label: Option<String>) {
+        let study_state = StudyState::new(&study, label);
+        self.has_code = study.protocol.access.code.is_some();
+        let page = StudyPage::loading_page(&study_state.title).in_study(&study_state);
+        self.stage = Stage::Study(Box::new(page));
         self.study = Some(study_state);
         self.send_study_request(StudyRequest::StartStudy(study));
     }
@@ -53,7 +55,10 @@ impl App {
             Request::Study(StudyRequest::SubmitAnswers(answers)) => {
                 study_state.due_questions.retain(|due| answers.iter().all(|answer| answer.due != *due));
             }
-            Request::Study(StudyRequest::Play) => self.starts_tour = study_state.has_tour(),
+            Request::Study(StudyRequest::Play) => {
+                study_state.has_shown_end = false;
+                self.starts_tour = study_state.has_tour();
+            }
             _ => {}
         }
     }
@@ -61,23 +66,43 @@ impl App {
     fn show_study_page(&mut self, page: impl FnOnce(&str) -> StudyPage) {
         self.close_layers();
         let Some(study_state) = &self.study else { return };
-        self.stage = Stage::Study(Box::new(page(&study_state.title)));
+        self.stage = Stage::Study(Box::new(page(&study_state.title).in_study(study_state)));
     }
 
     pub(super) fn handle_study_response(&mut self, news: StudyResponse) {
         let Some(study_state) = &mut self.study else { return };
         match news {
-            StudyResponse::Ready => self.show_study_page(StudyPage::label_page),
+            StudyResponse::Ready => match study_state.label.clone() {
+                Some(label) => {
+                    let rejected_labels = 0;
+                    self.send_study_request(StudyRequest::IdentifyParticipant { label, rejected_labels });
+                }
+                None => self.show_study_page(StudyPage::label_page),
+            },
             StudyResponse::LabelRejected(problem) => {
                 if let Stage::Study(page) = &mut self.stage {
                     page.reject_label(problem);
                 }
             }
+            StudyResponse::Next(step)
+                if !matches!(step, NextStep::Withdrawn(_))
+                    && matches!(&self.stage, Stage::Study(page) if page.withdraws_after_label()) =>
+            {
+                self.show_study_page(StudyPage::withdraw_page);
+            }
             StudyResponse::Next(step) => {
                 study_state.due_questions.clear();
                 study_state.is_practice = matches!(step, NextStep::Practice { .. });
-                let opens = matches!(step, NextStep::Questions(_));
-                self.show_study_page(|title| StudyPage::from_step(title, step));
+                // A participant who returns to a hosted session continues at the same place.
+                let resumes = matches!(
+                    step,
+                    NextStep::Session(Some(_)) | NextStep::Practice { unfinished: Some(_), .. }
+                );
+                let opens = matches!(step, NextStep::Questions(_)) || study_state.label.is_some() && resumes;
+                self.show_study_page(|title| match opens {
+                    true => StudyPage::loading_page(title),
+                    false => StudyPage::from_step(title, step),
+                });
                 if opens {
                     self.send_study_request(StudyRequest::Play);
                 }
@@ -86,18 +111,13 @@ impl App {
             StudyResponse::QuestionsDue(due) | StudyResponse::AnswersRecorded(due) => {
                 study_state.due_questions = due
             }
-            StudyResponse::CodeChecked(Some(true)) => {
+            StudyResponse::CodeChecked(CodeOutcome::Right) => {
                 self.study = None;
                 self.stage = Stage::Menu(Box::new(StartMenu::new(&self.configuration)));
                 self.orders.push(Order::Job(Job::Execute(Request::ListRuns)));
             }
-            StudyResponse::CodeChecked(right) => {
-                let problem = match right {
-                    None => "this study has no experimenter's code",
-                    Some(_) => "this is not the experimenter's code",
-                };
-                self.show_page_error(problem.to_owned());
-            }
+            StudyResponse::CodeChecked(outcome) => drop(self.show_page_error(outcome.describe())),
+            StudyResponse::LimitCodeChecked(outcome) => self.handle_limit_code(outcome),
             StudyResponse::Failed(problem) => {
                 self.show_page_error(problem);
             }
@@ -157,6 +177,8 @@ impl App {
                 self.push_layer(Layer::Dialog(Box::new(page)));
                 self.execute_effects(vec![effect]);
             }
+            // The results follow the last questions.
+            None if over && !study_state.has_shown_end => self.show_final_page(),
             None if over => self.exit_run(ExitTarget::Menu),
             None => {}
         }

@@ -2,9 +2,8 @@
 
 use std::time::Duration;
 
-use super::stopwatch::millis;
 use novamind_record::trajectory::record::PresenceEvent;
-use novamind_session::IDLE_TIMEOUT;
+use novamind_session::IdleWatch;
 
 /// A new window size is recorded after the size has been stable for this long.
 const RESIZE_DELAY: Duration = Duration::from_secs(1);
@@ -15,8 +14,7 @@ pub type PresenceRecord = (PresenceEvent, Option<u64>, Option<(u16, u16)>);
 /// Tracks input and window events.
 #[derive(Debug, Default)]
 pub struct PresenceWatch {
-    last_key: Duration,
-    idle: bool,
+    idle: IdleWatch,
     unfocused: bool,
     /// The new window size and the time of the change.
     resized: Option<((u16, u16), Duration)>,
@@ -25,16 +23,15 @@ pub struct PresenceWatch {
 impl PresenceWatch {
     /// Starts tracking with the user present.
     pub fn start(&mut self, now: Duration) {
-        *self = PresenceWatch { last_key: now, ..PresenceWatch::default() };
+        *self = PresenceWatch::default();
+        self.idle.start(now);
     }
 
     /// Handles a key, a paste or mouse input. The mouse can be used over a window without focus.
     pub fn handle_input(&mut self, by_mouse: bool, now: Duration) -> Vec<PresenceRecord> {
-        let idle = millis(now.saturating_sub(self.last_key));
-        self.last_key = now;
+        let active = self.idle.handle_input(now).map(|(event, idle_ms)| (event, Some(idle_ms), None));
         // Some terminals do not report regained focus, so key input counts as regained focus.
         let focus = if by_mouse { None } else { self.set_focus(true) };
-        let active = std::mem::take(&mut self.idle).then_some((PresenceEvent::Active, Some(idle), None));
         focus.into_iter().chain(active).collect()
     }
 
@@ -57,16 +54,13 @@ impl PresenceWatch {
         if let Some((window, _)) = self.resized.take_if(|(_, since)| now >= *since + RESIZE_DELAY) {
             noted.push((PresenceEvent::Resized, None, Some(window)));
         }
-        if !self.idle && now >= self.last_key + IDLE_TIMEOUT {
-            self.idle = true;
-            noted.push((PresenceEvent::Idle, Some(millis(now.saturating_sub(self.last_key))), None));
-        }
+        noted.extend(self.idle.check_time(now).map(|(event, idle_ms)| (event, Some(idle_ms), None)));
         noted
     }
 
     /// Returns the time at which the next presence event is due if there is no input.
     pub fn next_deadline(&self) -> Option<Duration> {
-        let idle = (!self.idle).then_some(self.last_key + IDLE_TIMEOUT);
+        let idle = self.idle.next_deadline();
         let resized = self.resized.map(|(_, since)| since + RESIZE_DELAY);
         [idle, resized].into_iter().flatten().min()
     }

@@ -106,7 +106,7 @@ fn key_table(parts: impl IntoIterator<Item = HelpSection>, keys: &KeyBindings) -
         for action in part.actions {
             let chords = keys.working_keys(action, &part.scopes);
             let unbound = keys.label(action).is_none();
-            if listed.contains(&action) || chords.is_empty() && !unbound {
+            if !keys.is_available(action) || listed.contains(&action) || chords.is_empty() && !unbound {
                 continue;
             }
             listed.push(action);

@@ -267,7 +267,7 @@ fn all_entries(keys: &KeyBindings, company: &DisplayedCompany, library: &QueryLi
     let hidden = |action: Action| match action {
         Action::Xray | Action::Breakpoints | Action::HiddenValues => !company.can_inspect,
         Action::Lesson | Action::LessonPage => company.lesson.is_none(),
-        _ => false,
+        action => !keys.is_available(action),
     };
     let commands = ACTIONS
         .iter()

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use super::{StudyPage, StudyPageKind, WITHDRAW};
 use crate::action::Action;
 use crate::keys::KeyBindings;
-use novamind_study::DECLINED_NOTICE;
+use novamind_study::{CLOSE_WINDOW_NOTICE, DECLINED_NOTICE, RETURN_LATER_NOTICE};
 use novamind_tui::canvas::{Canvas, centered_rect, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
@@ -27,7 +27,7 @@ impl StudyPage {
         let (title, paragraphs) = self.title_and_text(&key);
         let width = MAX_PAGE_WIDTH.min(body.width);
         let mut lines: Vec<(String, Role)> = Vec::new();
-        for (text, role) in paragraphs {
+        for (text, role) in paragraphs.into_iter().filter(|(text, _)| !text.is_empty()) {
             if !lines.is_empty() {
                 lines.push((String::new(), Role::Text));
             }
@@ -60,7 +60,7 @@ impl StudyPage {
     fn draw_field(&self, canvas: &mut Canvas<'_>, below: Rect) {
         let row = Rect { width: 32.min(below.width), height: below.height.min(1), ..below };
         match &self.kind {
-            StudyPageKind::Label(field) | StudyPageKind::Withdraw(Some(field)) => field.draw(canvas, row),
+            StudyPageKind::Label(field, _) | StudyPageKind::Withdraw(Some(field)) => field.draw(canvas, row),
             StudyPageKind::Code(field) => field.masked().draw(canvas, row),
             _ => {}
         }
@@ -70,11 +70,23 @@ impl StudyPage {
         let text = |words: &str| (words.to_owned(), Role::Text);
         let strong = |words: String| (words, Role::Strong);
         let go = key(Action::Continue);
-        let next_person = strong(format!("{go} next participant"));
+        let experimenter = if self.is_hosted { "" } else { "Please tell the experimenter." };
+        let next_person = strong(match self.is_hosted {
+            true => format!("{CLOSE_WINDOW_NOTICE} {go} ends the session"),
+            false => format!("{go} next participant"),
+        });
         match &self.kind {
-            StudyPageKind::Label(_) => {
-                ("Label", vec![strong("Type the label that the experimenter gave you.".to_owned())])
-            }
+            StudyPageKind::Label(_, false) => (
+                "Label",
+                vec![
+                    strong("Type the label that the experimenter gave you.".to_owned()),
+                    text(&format!("To erase what you did in this study, type {WITHDRAW} instead.")),
+                ],
+            ),
+            StudyPageKind::Label(_, true) => (
+                "Withdraw",
+                vec![strong("Type the label whose runs of this study are to be erased.".to_owned())],
+            ),
             StudyPageKind::Code(_) => ("Experimenter", vec![strong("The experimenter's code:".to_owned())]),
             StudyPageKind::Loading | StudyPageKind::Consent(_) => ("", vec![text("Loading …")]),
             StudyPageKind::Practice { resumed, may_pass } => {
@@ -101,25 +113,35 @@ impl StudyPage {
                     false => "The session starts now.",
                     true => "The session continues where you left off.",
                 };
-                let kept = "Everything you confirm is saved. You can leave at any time and continue later with your label.";
+                let kept = match self.is_hosted {
+                    true => format!("Everything you confirm is saved. You can leave at any time. {RETURN_LATER_NOTICE}"),
+                    false => {
+                        "Everything you confirm is saved. You can leave at any time and continue later with your label."
+                            .to_owned()
+                    }
+                };
                 let palette = key(Action::Palette);
                 let withdraw = format!(
                     "You can withdraw at any time ({palette} {}). Withdrawing erases everything you did in this study.",
                     Action::Withdraw.entry().title
                 );
                 let pause = format!(
-                    "For a break, {} stops the clock: the screen is hidden, and the time does not count.",
-                    key(Action::StopClock)
+                    "For a break, {} stops the clock: the screen is hidden, and the time does not count.{}",
+                    key(Action::StopClock),
+                    if self.has_limits { " If you only leave, the time limit continues." } else { "" }
                 );
                 let goes = strong(format!("{go} {}", if *resumed { "continues" } else { "starts" }));
-                ("Session", vec![text(first), text(kept), text(&pause), text(&withdraw), goes])
+                ("Session", vec![text(first), text(&kept), text(&pause), text(&withdraw), goes])
             }
             StudyPageKind::Left => (
                 "Left",
                 vec![
-                    text(
-                        "Everything is saved. To continue later, return to this computer and enter your label again.",
-                    ),
+                    text(match self.is_hosted {
+                        true => RETURN_LATER_NOTICE,
+                        false => {
+                            "Everything is saved. To continue later, return to this computer and enter your label again."
+                        }
+                    }),
                     next_person,
                 ],
             ),
@@ -140,25 +162,27 @@ impl StudyPage {
                 "Withdraw",
                 vec![strong(format!("Type {WITHDRAW} to erase everything you did in this study."))],
             ),
-            StudyPageKind::Declined => (
-                "Not agreed",
-                vec![text(DECLINED_NOTICE), text("Please tell the experimenter."), next_person],
-            ),
+            StudyPageKind::Declined => {
+                ("Not agreed", vec![text(DECLINED_NOTICE), text(experimenter), next_person])
+            }
             StudyPageKind::Withdrawn(kept) => (
                 "Withdrawn",
                 vec![
                     text("You have withdrawn from this study."),
                     text(kept),
-                    text("Please tell the experimenter."),
+                    text(experimenter),
                     next_person,
                 ],
             ),
             StudyPageKind::Thanks => (
                 "Thank you",
                 vec![
-                    text(
-                        "Thank you for taking part. Everything has been saved. Please tell the experimenter that you have finished.",
-                    ),
+                    text(match self.is_hosted {
+                        true => "Thank you for taking part.",
+                        false => {
+                            "Thank you for taking part. Everything has been saved. Please tell the experimenter that you have finished."
+                        }
+                    }),
                     next_person,
                 ],
             ),

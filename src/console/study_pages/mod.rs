@@ -20,6 +20,10 @@ use novamind_worker::request::{Request, StudyRequest};
 pub struct StudyState {
     /// Title of the study that participants see.
     pub title: String,
+    /// Label of the participant of a hosted session; `None` if participants enter their labels.
+    pub label: Option<String>,
+    /// Whether the study has time limits.
+    has_limits: bool,
     /// Whether the practice includes the tour.
     has_practice_tour: bool,
     /// Due questions that have no answer yet.
@@ -28,17 +32,27 @@ pub struct StudyState {
     pub is_practice: bool,
     /// Whether the participant left the run to withdraw.
     pub is_withdrawing: bool,
+    /// Whether the page at the end of the current run was shown.
+    pub has_shown_end: bool,
 }
 
 impl StudyState {
     /// Returns the state of a study before the first participant starts.
-    pub fn new(study: &Study) -> StudyState {
+    pub fn new(study: &Study, label: Option<String>) -> StudyState {
         StudyState {
             title: study.protocol.title.clone(),
+            label,
+            has_limits: {
+                let limits = &study.protocol.limits;
+                [limits.week_minutes, limits.session_minutes, limits.study_minutes]
+                    .iter()
+                    .any(Option::is_some)
+            },
             has_practice_tour: study.protocol.session.tour,
             due_questions: Vec::new(),
             is_practice: false,
             is_withdrawing: false,
+            has_shown_end: false,
         }
     }
 
@@ -55,11 +69,15 @@ pub struct StudyPage {
     problem: Option<String>,
     /// Number of rejected labels on this page.
     rejected_labels: u32,
+    /// Whether the participant has a hosted session, which ends with the participant's last page.
+    is_hosted: bool,
+    /// Whether the study has time limits.
+    has_limits: bool,
 }
 
 enum StudyPageKind {
-    /// Page on which the participant enters a label.
-    Label(TextField),
+    /// Page on which the participant enters a label. The flag is true if the participant then withdraws.
+    Label(TextField, bool),
     /// Page on which the experimenter enters the code.
     Code(TextField),
     /// Page that is shown until a response arrives.
@@ -86,12 +104,35 @@ const WITHDRAW: &str = "withdraw";
 
 impl StudyPage {
     fn new(title: &str, kind: StudyPageKind) -> StudyPage {
-        StudyPage { title: title.to_owned(), kind, problem: None, rejected_labels: 0 }
+        StudyPage {
+            title: title.to_owned(),
+            kind,
+            problem: None,
+            rejected_labels: 0,
+            is_hosted: false,
+            has_limits: false,
+        }
+    }
+
+    /// Returns the page with the properties of the study and of the session.
+    pub fn in_study(self, study_state: &StudyState) -> StudyPage {
+        StudyPage { is_hosted: study_state.label.is_some(), has_limits: study_state.has_limits, ..self }
+    }
+
+    /// Returns whether the participant can only leave this page, or withdraw.
+    pub fn is_last_page(&self) -> bool {
+        matches!(
+            self.kind,
+            StudyPageKind::Left
+                | StudyPageKind::Declined
+                | StudyPageKind::Withdrawn(_)
+                | StudyPageKind::Thanks
+        )
     }
 
     /// Returns the page that asks for a label.
     pub fn label_page(title: &str) -> StudyPage {
-        StudyPage::new(title, StudyPageKind::Label(TextField::default()))
+        StudyPage::new(title, StudyPageKind::Label(TextField::default(), false))
     }
 
     /// Returns the page that is shown until a response arrives.
@@ -132,9 +173,18 @@ impl StudyPage {
 
     /// Shows why a label was rejected, and counts the rejection.
     pub fn reject_label(&mut self, problem: String) {
+        if self.is_hosted {
+            return self.set_problem(problem);
+        }
         self.rejected_labels += 1;
         let field = TextField::default();
-        (self.kind, self.problem) = (StudyPageKind::Label(field), Some(problem));
+        (self.kind, self.problem) =
+            (StudyPageKind::Label(field, self.withdraws_after_label()), Some(problem));
+    }
+
+    /// Returns whether the participant chose to withdraw before entering the label.
+    pub fn withdraws_after_label(&self) -> bool {
+        matches!(self.kind, StudyPageKind::Label(_, true))
     }
 
     /// Shows an error message on the page.
@@ -145,7 +195,7 @@ impl StudyPage {
     /// Returns the scopes of the current page.
     pub fn scopes(&self) -> Vec<Scope> {
         match self.kind {
-            StudyPageKind::Label(_) | StudyPageKind::Code(_) | StudyPageKind::Withdraw(Some(_)) => {
+            StudyPageKind::Label(..) | StudyPageKind::Code(_) | StudyPageKind::Withdraw(Some(_)) => {
                 vec![Scope::Field, Scope::Study]
             }
             StudyPageKind::Consent(_) => vec![Scope::Study, Scope::List],
@@ -157,11 +207,13 @@ impl StudyPage {
     /// Returns the actions to show in the footer, without the action of the experimenter.
     pub fn hints(&self) -> Vec<Action> {
         match &self.kind {
-            StudyPageKind::Label(_) => vec![Action::Continue],
+            StudyPageKind::Label(..) => vec![Action::Continue],
             StudyPageKind::Code(_) => vec![Action::Continue, Action::Discard],
             StudyPageKind::Loading => Vec::new(),
-            StudyPageKind::Consent(text) if text.consent().is_none() => vec![Action::Down, Action::Decline],
-            StudyPageKind::Consent(_) => vec![Action::Agree, Action::Decline],
+            StudyPageKind::Consent(text) if text.consent().is_none() => {
+                vec![Action::Down, Action::Decline, Action::Withdraw]
+            }
+            StudyPageKind::Consent(_) => vec![Action::Agree, Action::Decline, Action::Withdraw],
             StudyPageKind::Practice { may_pass: true, .. } => {
                 vec![Action::Continue, Action::SkipPractice, Action::Withdraw]
             }
@@ -186,6 +238,7 @@ impl StudyPage {
                 None => vec![Effect::ShowError(UNREAD_ERROR.to_owned())],
             },
             (StudyPageKind::Consent(_), Action::Decline) => self.send_request(StudyRequest::Decline),
+            _ if withdraws => self.show_page(StudyPageKind::Withdraw(None)),
             (StudyPageKind::Consent(text), _) => {
                 text.handle_scroll(action);
                 Vec::new()
@@ -193,7 +246,7 @@ impl StudyPage {
             (StudyPageKind::Practice { may_pass: true, .. }, Action::SkipPractice) => {
                 self.send_request(StudyRequest::SkipPractice)
             }
-            (StudyPageKind::Label(_), Action::Experimenter) => {
+            (StudyPageKind::Label(..), Action::Experimenter) => {
                 self.show_page(StudyPageKind::Code(TextField::default()))
             }
             (StudyPageKind::Withdraw(None), Action::Confirm) => {
@@ -205,9 +258,8 @@ impl StudyPage {
                 self.send_request(StudyRequest::ShowNextStep).into_iter().chain([kept]).collect()
             }
             (StudyPageKind::Code(_), Action::Discard) => {
-                self.show_page(StudyPageKind::Label(TextField::default()))
+                self.show_page(StudyPageKind::Label(TextField::default(), false))
             }
-            _ if withdraws => self.show_page(StudyPageKind::Withdraw(None)),
             (_, Action::Continue | Action::Commit | Action::CommitNext) => self.continue_to_next(),
             _ => Vec::new(),
         }
@@ -220,7 +272,10 @@ impl StudyPage {
 
     fn continue_to_next(&mut self) -> Vec<Effect> {
         match &self.kind {
-            StudyPageKind::Label(field) if !field.text().trim().is_empty() => {
+            StudyPageKind::Label(field, _) if field.text().trim() == WITHDRAW => {
+                self.show_page(StudyPageKind::Label(TextField::default(), true))
+            }
+            StudyPageKind::Label(field, _) if !field.text().trim().is_empty() => {
                 let (label, refused) = (field.text().trim().to_owned(), self.rejected_labels);
                 vec![Effect::Request(Request::Study(StudyRequest::IdentifyParticipant {
                     label,
@@ -241,13 +296,11 @@ impl StudyPage {
                 self.problem = Some(format!("nothing was erased: type {WITHDRAW}, or press esc to continue"));
                 Vec::new()
             }
+            _ if self.is_last_page() && self.is_hosted => vec![Effect::LeaveNow],
             // The next participant can enter a label.
-            StudyPageKind::Left
-            | StudyPageKind::Declined
-            | StudyPageKind::Withdrawn(_)
-            | StudyPageKind::Thanks => {
+            _ if self.is_last_page() => {
                 self.rejected_labels = 0;
-                self.show_page(StudyPageKind::Label(TextField::default()))
+                self.show_page(StudyPageKind::Label(TextField::default(), false))
             }
             _ => Vec::new(),
         }
@@ -261,7 +314,7 @@ impl StudyPage {
 
     fn field(&mut self) -> Option<&mut TextField> {
         match &mut self.kind {
-            StudyPageKind::Label(field)
+            StudyPageKind::Label(field, _)
             | StudyPageKind::Code(field)
             | StudyPageKind::Withdraw(Some(field)) => Some(field),
             _ => None,

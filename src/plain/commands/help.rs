@@ -5,8 +5,8 @@ use serde_json::json;
 use super::super::grammar::{Argument, ParseError, current_name};
 use super::super::response::CommandResponse;
 use super::{
-    COMMANDS, NEXT_WEEK_COMMANDS, argument_error, explanations, find_tool, inbox, overview, parameters,
-    rules, xray,
+    COMMANDS, NEXT_WEEK_COMMANDS, argument_error, explanations, find_tool, inbox, is_hosted_command,
+    overview, parameters, rules, xray,
 };
 use novamind_base::similar_names;
 use novamind_tools::{ParameterNumbers, ToolKind};
@@ -94,21 +94,36 @@ const WITHDRAW: (&str, &str) =
 const NOT_FOR_PARTICIPANTS: [&str; 11] =
     ["branch", "step", "xray", "lens", "diff", "set", "break", "run", "since", "find", "who"];
 
-/// Returns the commands with their help lines. `led` selects the commands for participants of a study.
-fn commands(led: bool) -> impl Iterator<Item = (&'static str, &'static str)> {
-    let all = COMMANDS.iter().copied().filter(|(_, line)| !line.is_empty());
-    all.filter(move |(name, _)| !led || !NOT_FOR_PARTICIPANTS.contains(name)).chain(led.then_some(WITHDRAW))
+/// The player who reads the help.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Audience {
+    /// Whether the player is a participant of a study.
+    pub led: bool,
+    /// Whether the session is hosted.
+    pub hosted: bool,
 }
 
-/// Executes `help [NAME]`. `led` selects the help for participants of a study.
+impl Audience {
+    fn has_command(self, name: &str) -> bool {
+        (!self.led || !NOT_FOR_PARTICIPANTS.contains(&name)) && (!self.hosted || is_hosted_command(name))
+    }
+}
+
+/// Returns the commands of an audience with their help lines.
+fn commands(audience: Audience) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let all = COMMANDS.iter().copied().filter(|(_, line)| !line.is_empty());
+    all.filter(move |(name, _)| audience.has_command(name)).chain(audience.led.then_some(WITHDRAW))
+}
+
+/// Executes `help [NAME]` for an audience.
 pub(super) fn help(
     name: Option<&str>,
     arguments: &[Argument],
     numbers: &ParameterNumbers,
-    led: bool,
+    audience: Audience,
 ) -> Result<CommandResponse, ParseError> {
     let Some(name) = name else {
-        let lines: Vec<&str> = commands(led).map(|(_, line)| line).collect();
+        let lines: Vec<&str> = commands(audience).map(|(_, line)| line).collect();
         let tools: Vec<&str> = callable_names().collect();
         let text = format!(
             "{}\n\nEvery tool is also a command: {}\nFor example: set_prices A=16 B=34 C=70\n\
@@ -122,11 +137,10 @@ pub(super) fn help(
         return Ok(CommandResponse::success("help", text, json!({ "commands": lines, "tools": tools })));
     };
     let name = current_name(name);
-    let is_theirs = !led || !NOT_FOR_PARTICIPANTS.contains(&name);
-    if let Some(text) = command_help(name, led).filter(|_| is_theirs) {
+    if let Some(text) = command_help(name, audience.led).filter(|_| audience.has_command(name)) {
         return Ok(CommandResponse::success("help", text.clone(), json!({ "command": text })));
     }
-    if let Some((_, line)) = commands(led).find(|(command, _)| *command == name) {
+    if let Some((_, line)) = commands(audience).find(|(command, _)| *command == name) {
         return Ok(CommandResponse::success("help", line.to_owned(), json!({ "command": line })));
     }
     if novamind_tools::find(name).is_some() || find_tool(name).is_some() {
@@ -138,7 +152,7 @@ pub(super) fn help(
     if let Ok(found) = novamind_glossary::find_subject(name) {
         return Ok(explanations::explain_subject("help", found, numbers));
     }
-    let names = commands(led).map(|(name, _)| name).chain(callable_names());
+    let names = commands(audience).map(|(name, _)| name).chain(callable_names());
     let names =
         names.chain(novamind_database::tables(numbers.interface()).iter().map(|table| table.name.as_str()));
     let where_to_look = "type help to list the commands, or glossary to list the terms";
@@ -182,12 +196,14 @@ mod tests {
     #[test]
     fn commands_are_explained_with_an_example() {
         for name in ["inbox", "thread", "needs", "fit", "leads", "curve", "check", "pause", "rules", "next"] {
-            let help_text =
-                help(Some(name), &[], &ParameterNumbers::bundled(), false).expect("help").to_text();
+            let help_text = help(Some(name), &[], &ParameterNumbers::bundled(), Audience::default())
+                .expect("help")
+                .to_text();
             assert!(help_text.lines().count() > 1, "{name}: {help_text}");
         }
-        let help_text =
-            help(Some("needs"), &[], &ParameterNumbers::bundled(), false).expect("help").to_text();
+        let help_text = help(Some("needs"), &[], &ParameterNumbers::bundled(), Audience::default())
+            .expect("help")
+            .to_text();
         assert!(help_text.contains("Urgent problems come first"), "{help_text}");
     }
 
@@ -195,7 +211,7 @@ mod tests {
     fn unknown_names_point_to_the_list() {
         let numbers = ParameterNumbers::bundled();
         for (outcome, list) in [
-            (help(Some("zzzzzzz"), &[], &numbers, false), "type help to list the commands"),
+            (help(Some("zzzzzzz"), &[], &numbers, Audience::default()), "type help to list the commands"),
             (overview::tools_command(Some("foo"), &[], &numbers), "type tools to list all tools"),
             (
                 overview::tables_command(Some("leger"), &[], numbers.interface()),

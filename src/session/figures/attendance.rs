@@ -6,12 +6,22 @@
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
+use crate::recording::activity::IDLE_TIMEOUT;
 use novamind_record::trajectory::record::{Activity, ClockEvent, LimitScope, Presence, PresenceEvent};
 use novamind_record::trajectory::{Line, Record};
 
 /// Minimum gap between lines that counts as a break if there are no `session` lines: ten minutes, in seconds.
 pub const MIN_BREAK_SECONDS: f64 = 600.0;
 
+/// Time away after which a session ends, and the next opening of the run starts a new session: 30 minutes, in seconds.
+///
+/// A shorter absence belongs to the session, however the program ended, and time limits run on. Closing or killing the
+/// program and opening the run again therefore gains no time.
+pub const SESSION_BREAK_SECONDS: f64 = 1800.0;
+
+/// Longest time without a line while the user is playing. After it, the program records that the user is idle.
+const MAX_UNSEEN_NS: i64 = IDLE_TIMEOUT.as_secs() as i64 * NS_PER_SECOND;
+const SESSION_BREAK_NS: i64 = SESSION_BREAK_SECONDS as i64 * NS_PER_SECOND;
 const MIN_BREAK_NS: i64 = MIN_BREAK_SECONDS as i64 * NS_PER_SECOND;
 const NS_PER_SECOND: i64 = 1_000_000_000;
 const NS_PER_MS: i64 = 1_000_000;
@@ -174,6 +184,35 @@ pub struct Attendance {
     weeks: Vec<AttendedWeek>,
     week_start_ns: i64,
     session_start_ns: i64,
+    limit_time: LimitTime,
+}
+
+/// Time that counts for time limits, in nanoseconds.
+///
+/// All time of a session counts, except while the clock is stopped, days are simulated, or questions of the study are
+/// open: also idle time, time in other windows, and time for which the program was closed. Between two sessions, no time
+/// counts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct LimitTime {
+    week: i64,
+    session: i64,
+    study: i64,
+}
+
+impl LimitTime {
+    fn add(&mut self, passed: i64) {
+        self.week += passed;
+        self.session += passed;
+        self.study += passed;
+    }
+
+    fn in_scope(&self, scope: LimitScope) -> i64 {
+        match scope {
+            LimitScope::Week => self.week,
+            LimitScope::Session => self.session,
+            LimitScope::Study => self.study,
+        }
+    }
 }
 
 impl Attendance {
@@ -192,9 +231,25 @@ impl Attendance {
         }
         self.last_time_ns = Some(moment);
         let passed = passed.max(0);
-        self.push_span(passed, self.classify_gap(passed, Some(record)));
+        let time_use = self.classify_gap(passed, Some(record));
+        let starts_session = self.starts_new_session(passed, record);
+        let counted = match (starts_session, self.connection) {
+            (false, _) => passed,
+            // The program was killed: the user may have played for a while after the last line.
+            (true, ConnectionState::Open { .. }) => passed.min(MAX_UNSEEN_NS),
+            (true, _) => 0,
+        };
+        if self.counts_for_limits(time_use) {
+            self.limit_time.add(counted);
+        }
+        self.push_span(passed, time_use);
         match record {
-            Record::Activity(Activity::Session(presence)) => self.apply_presence(presence),
+            Record::Activity(Activity::Session(presence)) => {
+                if starts_session {
+                    (self.session_start_ns, self.limit_time.session) = (self.end_ns, 0);
+                }
+                self.apply_presence(presence);
+            }
             Record::Activity(Activity::Question(_)) => self.open_questions += 1,
             Record::Activity(Activity::Clock(clock)) => self.is_paused = clock.event == ClockEvent::Stopped,
             // The copied lines of a branch were played in the parent run, at another time.
@@ -202,6 +257,7 @@ impl Attendance {
                 self.spans.clear();
                 self.weeks.iter_mut().for_each(|week| week.is_inherited = true);
                 (self.week_start_ns, self.session_start_ns) = (self.end_ns, self.end_ns);
+                self.limit_time = LimitTime::default();
             }
             record if record.closed_days().is_some() => {
                 self.weeks.push(AttendedWeek {
@@ -210,6 +266,7 @@ impl Attendance {
                     is_inherited: false,
                 });
                 self.week_start_ns = self.end_ns;
+                self.limit_time.week = 0;
             }
             record if is_user_action(record) => (self.is_idle, self.has_lost_focus) = (false, false),
             _ => {}
@@ -268,6 +325,28 @@ impl Attendance {
         spent
     }
 
+    /// Returns the milliseconds that count for a limit up to `moment`, in nanoseconds since the Unix epoch.
+    pub fn limit_ms_until(&self, scope: LimitScope, moment: i64) -> u64 {
+        let passed = (moment - self.last_time_ns.unwrap_or(moment)).max(0);
+        let counted = if self.counts_for_limits(self.classify_gap(passed, None)) { passed } else { 0 };
+        ((self.limit_time.in_scope(scope) + counted) / NS_PER_MS).max(0) as u64
+    }
+
+    /// Returns whether time of this kind since the last line counts for time limits.
+    fn counts_for_limits(&self, time_use: TimeUse) -> bool {
+        let is_counted_kind = match time_use {
+            TimeUse::Active | TimeUse::Idle | TimeUse::Away => true,
+            TimeUse::Answering | TimeUse::Paused | TimeUse::Simulating => false,
+        };
+        is_counted_kind && self.open_questions == 0
+    }
+
+    /// Returns whether a line opens the run after an absence that ended the earlier session.
+    fn starts_new_session(&self, passed: i64, record: &Record) -> bool {
+        presence_event(record) == Some(PresenceEvent::Opened)
+            && (self.connection == ConnectionState::Unknown || passed >= SESSION_BREAK_NS)
+    }
+
     /// Returns how the time since the last line was spent. `record` is the event of the next line, if there is one.
     fn classify_gap(&self, passed: i64, record: Option<&Record>) -> TimeUse {
         let long = passed > MIN_BREAK_NS;
@@ -309,7 +388,6 @@ impl Attendance {
             PresenceEvent::Opened => {
                 let watches_keys = presence.interface.as_deref() == Some(KEY_WATCHING_INTERFACE);
                 self.connection = ConnectionState::Open { watches_keys };
-                self.session_start_ns = self.end_ns;
                 // The program shows unanswered questions again after it has opened the run.
                 self.open_questions = 0;
                 (self.is_idle, self.is_suspended, self.has_lost_focus) = (false, false, false);
@@ -544,6 +622,109 @@ mod tests {
         let at = |scope| run.spent_until(scope, 110 * NS_PER_SECOND).active_ms();
         let scopes = [LimitScope::Week, LimitScope::Session, LimitScope::Study].map(at);
         assert_eq!(scopes, [10_000, 15_000, 20_000]);
+    }
+
+    /// Returns the seconds that count for the limits of week, session and study at a time.
+    fn limit_seconds(attendance: &Attendance, at: i64) -> [u64; 3] {
+        [LimitScope::Week, LimitScope::Session, LimitScope::Study]
+            .map(|scope| attendance.limit_ms_until(scope, at * NS_PER_SECOND) / 1000)
+    }
+
+    #[test]
+    fn idle_time_and_time_in_other_windows_count_for_limits() {
+        for interface in ["console", "plain"] {
+            let run = attendance_from_records(&[
+                (0, opened_record(interface)),
+                (100, session_record(PresenceEvent::Idle, None, Some(60_000))),
+                (400, presence_record(PresenceEvent::Active)),
+                (410, presence_record(PresenceEvent::FocusLost)),
+                (500, presence_record(PresenceEvent::FocusGained)),
+            ]);
+            assert_eq!(limit_seconds(&run, 520), [520; 3], "{interface}");
+        }
+    }
+
+    #[test]
+    fn killing_or_closing_the_program_does_not_stop_or_reset_limits() {
+        let closed = presence_record(PresenceEvent::Closed);
+        // With and without a `closed` line: the program was closed, or killed while the user was reading.
+        let leavings = [vec![(50, closed)], vec![]];
+        for (leaving, interface) in
+            leavings.into_iter().flat_map(|one| ["console", "plain"].map(|name| (one.clone(), name)))
+        {
+            let mut lines = vec![(0, opened_record(interface)), (50, view_record())];
+            lines.extend(leaving);
+            lines.push((1000, opened_record(interface)));
+            lines.push((1010, view_record()));
+            let run = attendance_from_records(&lines);
+            assert_eq!(limit_seconds(&run, 1010), [1010; 3]);
+            let spent = run.spent_between(0, run.end_ns());
+            assert_eq!(spent.away_seconds(), 950.0, "the tables show the time as away");
+        }
+    }
+
+    #[test]
+    fn absence_of_half_an_hour_is_a_break_between_sessions() {
+        let run = attendance_from_records(&[
+            (0, opened_record("console")),
+            (100, presence_record(PresenceEvent::Closed)),
+            (100 + 1800, opened_record("console")),
+        ]);
+        assert_eq!(limit_seconds(&run, 1910), [110, 10, 110]);
+        let killed = attendance_from_records(&[
+            (0, opened_record("console")),
+            (100, view_record()),
+            (100 + 1800, opened_record("console")),
+        ]);
+        assert_eq!(limit_seconds(&killed, 1910), [170, 10, 170], "a minute may have passed before the kill");
+        let shorter = attendance_from_records(&[
+            (0, opened_record("console")),
+            (100, presence_record(PresenceEvent::Closed)),
+            (100 + 1799, opened_record("console")),
+        ]);
+        assert_eq!(limit_seconds(&shorter, 1909), [1909; 3]);
+    }
+
+    #[test]
+    fn only_stopped_clock_questions_and_simulation_stop_limits() {
+        let question =
+            Record::Activity(Activity::Question(novamind_record::trajectory::record::QuestionShown {
+                questionnaire: String::new(),
+                occasion: String::new(),
+                id: String::new(),
+                text: String::new(),
+                form: String::new(),
+                options: Vec::new(),
+            }));
+        let answer =
+            Record::Activity(Activity::Answer(novamind_record::trajectory::record::QuestionAnswer {
+                questionnaire: String::new(),
+                occasion: String::new(),
+                id: String::new(),
+                value: serde_json::Value::Null,
+                for_ms: 0,
+                changes: 0,
+                as_expected: None,
+            }));
+        let run = attendance_from_records(&[
+            (0, opened_record("console")),
+            (10, clock_record(ClockEvent::Stopped)),
+            // The participant closes the program while the clock is stopped.
+            (20, presence_record(PresenceEvent::Closed)),
+            (500, opened_record("console")),
+            (500, clock_record(ClockEvent::Forgotten)),
+            (510, question),
+            (600, session_record(PresenceEvent::Idle, None, Some(60_000))),
+            (700, answer),
+            (705, view_record()),
+        ]);
+        assert_eq!(limit_seconds(&run, 705), [25; 3]);
+        let next = attendance_from_records(&[
+            (0, opened_record("console")),
+            (60, view_record()),
+            (90, week_record()),
+        ]);
+        assert_eq!(limit_seconds(&next, 95), [5, 65, 65]);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use super::confinement;
 use novamind_record::mode::Mode;
 
 /// Locations of Python for baseline runs, in search order. `/usr/bin/python3` is omitted because it may be a stub that
@@ -33,9 +34,13 @@ pub(super) enum Interpreter {
 }
 
 impl Interpreter {
-    /// Returns the interpreter for a mode. Runs of studies are baseline runs.
+    /// Returns the interpreter for a mode. Runs of studies are baseline runs. Restricted scripts never search `PATH`.
     pub fn for_mode(mode: Mode) -> Interpreter {
-        if mode == Mode::Baseline { Interpreter::System } else { Interpreter::FromPath }
+        if mode == Mode::Baseline || confinement::is_restricted() {
+            Interpreter::System
+        } else {
+            Interpreter::FromPath
+        }
     }
 
     /// Returns the program to start and the `PATH` for its process. `path` is the `PATH` of the current process.

@@ -10,6 +10,8 @@ mod captured_pipe;
 #[cfg(unix)]
 mod channel;
 #[cfg(unix)]
+pub(crate) mod confinement;
+#[cfg(unix)]
 mod interpreter;
 #[cfg(unix)]
 mod process;

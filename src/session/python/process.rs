@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 use super::ScriptRequest;
 use super::captured_pipe::CapturedPipe;
 use super::channel::{Channel, ChannelEvent};
+use super::confinement;
 use super::interpreter::Interpreter;
 use super::script_folder::ScriptFolder;
 
@@ -46,7 +47,7 @@ pub(super) struct ScriptProcess {
     deadline: Instant,
     /// The first message to the process: code and limits.
     setup_message: Value,
-    _folder: ScriptFolder,
+    folder: ScriptFolder,
 }
 
 impl ScriptProcess {
@@ -65,7 +66,7 @@ impl ScriptProcess {
         // The process cannot start threads, so numerical libraries must use one thread.
         command.env_clear().env("PATH", path).envs([("OPENBLAS_NUM_THREADS", "1"), ("OMP_NUM_THREADS", "1")]);
         command.stdin(other).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
-        let mut process = command.spawn()?;
+        let mut process = confinement::spawn(&mut command, folder.path())?;
         // Close the child's end of the socket in this process, so that the exit of the child can be detected.
         drop(command);
         let pipes = (process.stdout.take(), process.stderr.take());
@@ -80,15 +81,15 @@ impl ScriptProcess {
             }
         };
         let given = json!({ "code": code, "seconds": time.as_secs_f64(), "memory": MAX_MEMORY_BYTES });
-        Ok(ScriptProcess {
-            process,
-            channel,
-            stdout,
-            stderr,
-            deadline,
-            setup_message: given,
-            _folder: folder,
-        })
+        Ok(ScriptProcess { process, channel, stdout, stderr, deadline, setup_message: given, folder })
+    }
+
+    /// Replaces the path of the script's folder in a text. In a hosted session, the path is a path of the server.
+    pub fn without_folder(&self, text: String) -> String {
+        match confinement::is_restricted() {
+            true => text.replace(&*self.folder.path().to_string_lossy(), "."),
+            false => text,
+        }
     }
 
     /// Returns the time until the deadline of the script.

@@ -62,15 +62,16 @@ fn script_result(
     time: Duration,
 ) -> Result<RawScriptOutput, Rejection> {
     match end {
-        ScriptEnd::Ended(status) if status.success() => {
-            Ok(RawScriptOutput { results: process.stdout.first_text(), remarks: process.stderr.first_text() })
-        }
+        ScriptEnd::Ended(status) if status.success() => Ok(RawScriptOutput {
+            results: process.without_folder(process.stdout.first_text()),
+            remarks: process.without_folder(process.stderr.first_text()),
+        }),
         ScriptEnd::Ended(status) => {
             let how = match (status.code(), status.signal()) {
                 (Some(code), _) => format!("python3 ended with code {code}"),
                 (None, signal) => format!("python3 was terminated by signal {}", signal.unwrap_or_default()),
             };
-            let traceback = process.stderr.last_text(MAX_TRACEBACK_CHARACTERS);
+            let traceback = process.without_folder(process.stderr.last_text(MAX_TRACEBACK_CHARACTERS));
             // The last line of the traceback is the error message. Put this message first, because some displays show
             // only one line.
             let what = traceback.trim_end().lines().next_back().filter(|line| !line.trim().is_empty());
@@ -99,7 +100,10 @@ fn script_result(
 }
 
 fn printed_output_paragraph(process: &ScriptProcess) -> String {
-    paragraph("output of the script:\n", &process.stdout.last_text(MAX_PRINTED_CHARACTERS))
+    paragraph(
+        "output of the script:\n",
+        &process.without_folder(process.stdout.last_text(MAX_PRINTED_CHARACTERS)),
+    )
 }
 
 /// Returns a paragraph of a message, or an empty string if `text` is empty.

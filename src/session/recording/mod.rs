@@ -2,6 +2,7 @@
 
 pub(crate) mod activity;
 pub(crate) mod folders;
+pub(crate) mod idle_watch;
 pub(crate) mod machine;
 pub(crate) mod recorder;
 pub(crate) mod session_clock;
@@ -85,10 +86,16 @@ impl RunLog {
         ];
         let left = |(scope, minutes): (LimitScope, Option<u32>)| {
             let minutes = minutes?;
-            let seconds = f64::from(minutes) * 60.0 - self.time_spent(scope).active_ms() as f64 / 1e3;
+            let seconds = f64::from(minutes) * 60.0 - self.limit_ms(scope) as f64 / 1e3;
             Some(TimeLeft { scope, minutes, seconds })
         };
         all.into_iter().filter_map(left).collect()
+    }
+
+    /// Returns the milliseconds that count for a limit. The time is zero if the run is open read-only.
+    fn limit_ms(&self, scope: LimitScope) -> u64 {
+        let attendance = self.recorder.as_ref().map(Recorder::attendance);
+        attendance.map_or(0, |time| time.limit_ms_until(scope, parse_nanoseconds(&now())))
     }
 
     /// Returns the time spent in the scope of a limit. The time is zero if the run is open read-only.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::figures::attendance::SESSION_BREAK_SECONDS;
 use novamind_record::rules::{LimitAction, TimeLimits};
 use novamind_record::trajectory::record::{Activity, ClockEvent, LimitEvent, LimitScope, PresenceEvent};
 use novamind_record::trajectory::{Record, Trajectory};
@@ -14,6 +15,10 @@ pub(crate) struct SessionClock {
     pub(super) is_stopped_by_limit: bool,
     /// Reported limits. The flag is true if the limit was reached, and false if the limit was near.
     pub(super) reported_limits: BTreeSet<(LimitScope, bool)>,
+    /// Limits that have stopped the clock. They stop the clock only once.
+    pausing_limits: BTreeSet<LimitScope>,
+    /// Time of the last line, in seconds since the Unix epoch.
+    last_line_at: Option<f64>,
 }
 
 /// A time limit and the time that is left until it is reached.
@@ -21,7 +26,7 @@ pub(crate) struct SessionClock {
 pub struct TimeLeft {
     /// Scope of the limit.
     pub scope: LimitScope,
-    /// Allowed active time in minutes.
+    /// Allowed time in minutes.
     pub minutes: u32,
     /// Seconds left until the limit is reached; negative if the limit is exceeded.
     pub seconds: f64,
@@ -38,9 +43,15 @@ impl SessionClock {
     pub(crate) fn apply(&mut self, record: &Record, at: f64) {
         match record {
             Record::Branch(_) => *self = SessionClock::default(),
-            Record::Week(_) => self.reported_limits.retain(|(scope, _)| *scope != LimitScope::Week),
+            Record::Week(_) => self.forget_limit(LimitScope::Week),
             Record::Activity(Activity::Session(presence)) if presence.event == PresenceEvent::Opened => {
-                self.reported_limits.retain(|(scope, _)| *scope != LimitScope::Session);
+                if self.last_line_at.is_some_and(|last| at - last >= SESSION_BREAK_SECONDS) {
+                    self.forget_limit(LimitScope::Session);
+                }
+                // Near and reached limits are reported again after the run was opened, because the program may have
+                // ended before it showed the warning or submitted the week.
+                let pausing = &self.pausing_limits;
+                self.reported_limits.retain(|(scope, reached)| *reached && pausing.contains(scope));
             }
             Record::Activity(Activity::Clock(clock)) => {
                 self.stopped_at = (clock.event == ClockEvent::Stopped).then_some(at);
@@ -48,10 +59,19 @@ impl SessionClock {
             }
             Record::Activity(Activity::Limit(limit)) => {
                 self.reported_limits.insert((limit.limit, limit.event != LimitEvent::Warned));
-                self.is_stopped_by_limit |= limit.event == LimitEvent::Paused;
+                if limit.event == LimitEvent::Paused {
+                    self.is_stopped_by_limit = true;
+                    self.pausing_limits.insert(limit.limit);
+                }
             }
             _ => {}
         }
+        self.last_line_at = Some(at);
+    }
+
+    fn forget_limit(&mut self, of: LimitScope) {
+        self.reported_limits.retain(|(scope, _)| *scope != of);
+        self.pausing_limits.remove(&of);
     }
 
     /// Returns the event of a time limit that must be reported now, if any.
@@ -141,6 +161,47 @@ mod tests {
         let paused = session_clock.due_event(left(LimitScope::Session, 0.0), &limits);
         assert_eq!(paused, Some(LimitEvent::Paused), "a session cannot be submitted");
         assert_eq!(left(LimitScope::Week, 61.0).describe(), "2 of 10 min left for this week");
+    }
+
+    fn opened_record() -> Record {
+        Record::Activity(Activity::Session(Box::new(novamind_record::trajectory::record::Presence {
+            event: PresenceEvent::Opened,
+            cause: None,
+            interface: Some("console".to_owned()),
+            machine: String::new(),
+            boot: String::new(),
+            monotonic_ms: 0,
+            window: None,
+            version: None,
+            idle_ms: None,
+            worlds: None,
+        })))
+    }
+
+    #[test]
+    fn reached_limit_is_applied_again_after_the_program_was_killed() {
+        let limits = TimeLimits { at_limit: LimitAction::Naive, ..TimeLimits::default() };
+        let reached = |scope| TimeLeft { scope, minutes: 10, seconds: -1.0 };
+        let mut clock = SessionClock::default();
+        clock.apply(&limit_record(LimitScope::Week, LimitEvent::FiledNaively), 5.0);
+        assert_eq!(clock.due_event(reached(LimitScope::Week), &limits), None);
+        // The program was killed before it submitted the week.
+        clock.apply(&opened_record(), 9.0);
+        let due = clock.due_event(reached(LimitScope::Week), &limits);
+        assert_eq!(due, Some(LimitEvent::FiledNaively));
+    }
+
+    #[test]
+    fn limit_that_the_experimenter_lifted_stays_lifted_within_the_session() {
+        let limits = TimeLimits { at_limit: LimitAction::Pause, ..TimeLimits::default() };
+        let reached = TimeLeft { scope: LimitScope::Session, minutes: 10, seconds: -1.0 };
+        let mut clock = SessionClock::default();
+        clock.apply(&limit_record(LimitScope::Session, LimitEvent::Paused), 0.0);
+        clock.apply(&clock_record(ClockEvent::Started), 5.0);
+        clock.apply(&opened_record(), 9.0);
+        assert_eq!(clock.due_event(reached, &limits), None);
+        clock.apply(&opened_record(), 9.0 + SESSION_BREAK_SECONDS);
+        assert_eq!(clock.due_event(reached, &limits), Some(LimitEvent::Paused));
     }
 
     #[test]

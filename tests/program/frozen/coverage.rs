@@ -20,7 +20,7 @@ const OUTPUT_OPTIONS: [&str; 10] = [
 ];
 
 /// Commands and options without a case, with the reason.
-const EXCEPTIONS: [(&str, &str); 15] = [
+const EXCEPTIONS: [(&str, &str); 19] = [
     ("bench", "measures time"),
     ("bench --json", "measures time"),
     ("completions", "written by the library that parses the command line"),
@@ -35,6 +35,10 @@ const EXCEPTIONS: [(&str, &str); 15] = [
     ("agent python", "needs Python"),
     ("study key", "makes random keys"),
     ("study code", "makes a random salt"),
+    ("host attach", "needs a terminal and a host"),
+    ("host code", "makes a random salt"),
+    ("host links", "makes random tokens"),
+    ("host links --csv", "makes random tokens"),
     ("lab golden", "plays at least 24 seeds; its text names no figure that others read"),
 ];
 

@@ -4,7 +4,7 @@
 use super::{CheckItem, CheckOutcome};
 use crate::record::error::RunError;
 use crate::record::folder::configuration::Configuration;
-use novamind_study::{Occasion, Study};
+use novamind_study::{Occasion, SeedPlan, Study};
 
 /// Checks the questionnaires, the assignment and the forecasts of the design.
 pub(super) fn check_design(study: &Study, configuration: &Configuration) -> Vec<CheckItem> {
@@ -15,6 +15,9 @@ pub(super) fn check_design(study: &Study, configuration: &Configuration) -> Vec<
     let mut points: Vec<CheckItem> = check_questionnaires(study, days.div_ceil(7)).into_iter().collect();
     points
         .extend(check_last_block(study).map(|words| CheckItem::new("assignment", CheckOutcome::Note(words))));
+    let is_hosted = study.folder.join("host").is_dir();
+    let guessable = study.guessable_seeds_warning().filter(|_| is_hosted);
+    points.extend(guessable.map(|words| CheckItem::new("seeds", CheckOutcome::Note(words))));
     points.push(CheckItem::new("forecasts", check_forecasts(days, &horizons)));
     points
 }
@@ -58,7 +61,9 @@ fn check_questionnaires(study: &Study, weeks: u32) -> Option<CheckItem> {
 /// Reports a last block of the assignment that does not contain every cell of the design.
 fn check_last_block(study: &Study) -> Option<String> {
     let (places, cells) = (study.assignment.as_ref()?.rows.len(), study.protocol.seeds.cell_count());
-    (!study.protocol.seeds.block.is_empty() && !places.is_multiple_of(cells)).then(|| {
+    let has_blocks =
+        matches!(study.protocol.seeds.plan, SeedPlan::Secret) || !study.protocol.seeds.block.is_empty();
+    (has_blocks && !places.is_multiple_of(cells)).then(|| {
         format!(
             "{places} labels in blocks of {cells}: the last block has {} of {cells} cells",
             places % cells

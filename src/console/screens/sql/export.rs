@@ -6,6 +6,7 @@ use super::values;
 use crate::action::Action;
 use crate::context::ScreenContext;
 use crate::effect::Effect;
+use crate::keys::KeyBindings;
 use novamind_base::formatting::grouped_number;
 use novamind_database::QueryResult;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
@@ -18,35 +19,42 @@ const MAX_CLIPBOARD_BYTES: usize = 64 << 10;
 const EXPORT_ACTIONS: [Action; 5] =
     [Action::ExportCsv, Action::ExportJson, Action::ExportMarkdown, Action::CopyTabs, Action::CopyMarkdown];
 
-#[derive(Default)]
 pub struct ExportMenu {
+    /// The formats that are available. Hosted sessions write no files.
+    formats: Vec<Action>,
     selected: usize,
 }
 
 impl ExportMenu {
+    /// Returns a menu with the available formats.
+    pub fn new(keys: &KeyBindings) -> ExportMenu {
+        let formats = EXPORT_ACTIONS.into_iter().filter(|action| keys.is_available(*action)).collect();
+        ExportMenu { formats, selected: 0 }
+    }
+
     /// Returns the export action that an action selects, or moves the selection.
     pub fn select_export(&mut self, action: Action) -> Option<Action> {
         match action {
             Action::Up => self.selected = self.selected.saturating_sub(1),
-            Action::Down => self.selected = (self.selected + 1).min(EXPORT_ACTIONS.len() - 1),
-            Action::Open => return Some(EXPORT_ACTIONS[self.selected]),
-            other => return EXPORT_ACTIONS.contains(&other).then_some(other),
+            Action::Down => self.selected = (self.selected + 1).min(self.formats.len() - 1),
+            Action::Open => return Some(self.formats[self.selected]),
+            other => return self.formats.contains(&other).then_some(other),
         }
         None
     }
 
     pub fn select_row(&mut self, row: usize) -> Action {
-        self.selected = row.min(EXPORT_ACTIONS.len() - 1);
-        EXPORT_ACTIONS[self.selected]
+        self.selected = row.min(self.formats.len() - 1);
+        self.formats[self.selected]
     }
 
     /// Draws the list of formats over the screen. `rows` describes the exported rows.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, rows: &str, context: &ScreenContext<'_>) {
-        let dialog_area = centered_rect(area, 62, EXPORT_ACTIONS.len() as u16 + 2);
+        let dialog_area = centered_rect(area, 62, self.formats.len() as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
         canvas.clicks.clear();
         let inside = canvas.draw_pane_frame(dialog_area, "Export", rows, true);
-        for (row, (at, way)) in row_rects(inside).zip(EXPORT_ACTIONS.iter().enumerate()) {
+        for (row, (at, way)) in row_rects(inside).zip(self.formats.iter().enumerate()) {
             let selected = at == self.selected;
             let role = |other| if selected { Role::Selection } else { other };
             if selected {
@@ -117,14 +125,16 @@ mod tests {
 
     #[test]
     fn export_menu_selects_formats_by_row_and_key() {
-        let mut list = ExportMenu::default();
+        let mut list = ExportMenu::new(&KeyBindings::bundled());
         assert_eq!(list.select_export(Action::Up), None);
         list.select_export(Action::Down);
         assert_eq!(list.select_export(Action::Open), Some(Action::ExportJson));
         assert_eq!(list.select_export(Action::CopyMarkdown), Some(Action::CopyMarkdown));
         assert_eq!(list.select_export(Action::Close), None);
         assert_eq!(list.select_row(99), Action::CopyMarkdown);
-        let keys = crate::keys::KeyBindings::bundled();
+        let keys = KeyBindings::bundled();
+        let hosted = ExportMenu::new(&crate::hosted::hosted_keys(KeyBindings::bundled()));
+        assert_eq!(hosted.formats, [Action::CopyTabs, Action::CopyMarkdown], "no files");
         assert!(EXPORT_ACTIONS.iter().all(|way| keys.label(*way).is_some()));
     }
 }

@@ -301,7 +301,7 @@ impl PaneScreen for Sql {
             Action::History => return Some(self.open_history(context)),
             Action::Library => self.open_library(),
             Action::SaveQuery => return Some(self.open_save_query()),
-            Action::Export => return Some(self.open_export()),
+            Action::Export => return Some(self.open_export(context)),
             _ => return None,
         }
         Some(Vec::new())

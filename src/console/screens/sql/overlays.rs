@@ -241,11 +241,11 @@ impl Sql {
         Vec::new()
     }
 
-    pub(super) fn open_export(&mut self) -> Vec<Effect> {
+    pub(super) fn open_export(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
         if !self.results.current().has_rows() {
             return vec![Effect::ShowError("No result to export. Run a statement first.".to_owned())];
         }
-        self.overlay = Some(SqlOverlay::Export(ExportMenu::default()));
+        self.overlay = Some(SqlOverlay::Export(ExportMenu::new(context.keys)));
         Vec::new()
     }
 

@@ -345,13 +345,10 @@ fn key_hints(form: &ToolForm, context: &ScreenContext<'_>) -> String {
         false if form.code_editor().is_some() => context.hints(&[Action::Apply, Action::LeaveEditor]),
         false if form.is_typing() => context.hints(&[Action::CommitDown, Action::Apply, Action::Discard]),
         false => format!(
-            "{} {} · {} · {} · {} · {}",
+            "{} {} · {}",
             context.hint(Action::EditCell),
             form.sheet.blocks.get(form.focus.block).map_or("the value", ArgumentBlock::kind_label),
-            context.hint(Action::Apply),
-            context.hint(Action::ResetForm),
-            context.hint(Action::CopyCall),
-            context.hint(Action::SaveCalls)
+            context.hints(&[Action::Apply, Action::ResetForm, Action::CopyCall, Action::SaveCalls])
         ),
     }
 }

@@ -108,9 +108,9 @@ pub struct Limit {
     pub limit: LimitScope,
     /// Kind of the event.
     pub event: LimitEvent,
-    /// Allowed active time in minutes.
+    /// Allowed time in minutes.
     pub minutes: u32,
-    /// Active time used in the scope, in milliseconds.
+    /// Time used in the scope, in milliseconds.
     pub used_ms: u64,
 }
 

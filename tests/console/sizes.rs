@@ -238,7 +238,7 @@ fn cut_labels(buffer: &Buffer, theme: &Theme) -> Vec<String> {
         };
         let in_border = || {
             let next = (x + 1..=x + 2).filter_map(|x| buffer.cell((x, y)));
-            next.last().is_some_and(|cell| "─━┐┓┘┛".contains(cell.symbol()))
+            next.next_back().is_some_and(|cell| "─━┐┓┘┛".contains(cell.symbol()))
         };
         cell.symbol() == "…" && (has_role(Role::Title) || has_role(Role::Header) || in_border())
     };

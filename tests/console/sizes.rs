@@ -237,8 +237,8 @@ fn cut_labels(buffer: &Buffer, theme: &Theme) -> Vec<String> {
             style.fg == Some(cell.fg) && cell.modifier.contains(style.add_modifier)
         };
         let in_border = || {
-            let next = (x + 1..=x + 2).filter_map(|x| buffer.cell((x, y)));
-            next.next_back().is_some_and(|cell| "─━┐┓┘┛".contains(cell.symbol()))
+            let mut next = (x + 1..=x + 2).rev().filter_map(|x| buffer.cell((x, y)));
+            next.next().is_some_and(|cell| "─━┐┓┘┛".contains(cell.symbol()))
         };
         cell.symbol() == "…" && (has_role(Role::Title) || has_role(Role::Header) || in_border())
     };

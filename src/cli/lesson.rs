@@ -36,7 +36,7 @@ enum LessonCommand {
     Copy {
         /// Name of the lesson, or path of its file
         lesson: String,
-        /// Name in your folder of lessons, or path of a file that ends in .toml
+        /// Name of the new lesson, or path of its file, which must end in .toml
         to: String,
     },
     /// Play a lesson
@@ -234,7 +234,7 @@ fn describe_check(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> 
     text
 }
 
-/// Formats the values of a goal in the plays, in the order of the plays. Values that do not reach the goal
+/// Formats the value that each play reaches for a goal, in the order of the plays. Values that do not reach the goal
 /// are in parentheses.
 fn goal_values(plays: &[PlayResult], at: usize) -> String {
     let written = plays.iter().filter_map(|play| play.goals.get(at)).map(|goal| {

@@ -1,4 +1,4 @@
-//! `novamind pictures`: draws the screens of a run with the console, as text or SVG.
+//! `novamind pictures`: draws the console's screens of a run as text or SVG.
 
 use std::path::{Path, PathBuf};
 

@@ -5,7 +5,7 @@ use super::keys::KeyBindings;
 use novamind_insight::WeekQuantity;
 use novamind_worker::company::DisplayedCompany;
 
-/// Placeholder of charts and tables before the first week.
+/// Placeholder for charts and tables before the first week.
 pub const NO_DATA: &str = "no data yet: run a week (n)";
 
 /// Defines the screens in the order of their keys.

@@ -167,7 +167,7 @@ impl ReleasedSchema {
             }
         }
         let program = match statement.is_explain() {
-            1 => Some(self.explain_rows(&sql).ok_or(QueryFault::MachineCode)?),
+            1 => Some(self.explain_statement(&sql).ok_or(QueryFault::MachineCode)?),
             _ => None,
         };
         let is_plan = statement.is_explain() == 2;
@@ -177,7 +177,7 @@ impl ReleasedSchema {
     /// Returns whether the statement has a correlated subquery.
     fn has_correlated_subquery(&self, sql: &str) -> bool {
         let plan = self
-            .explain_rows(&format!("EXPLAIN QUERY PLAN {}", strip_explain_query_plan(sql)))
+            .explain_statement(&format!("EXPLAIN QUERY PLAN {}", strip_explain_query_plan(sql)))
             .unwrap_or_default();
         // The engine converts some EXISTS subqueries to joins and marks their table in the plan.
         let is_correlated_step = |step: &str| step.starts_with("CORRELATED") || step.contains(" EXISTS");
@@ -212,10 +212,10 @@ impl ReleasedSchema {
 
     /// Compiles a statement and returns its program. Returns `None` if the statement does not compile.
     fn compile_program(&self, sql: &str) -> Option<Program> {
-        self.explain_rows(&format!("EXPLAIN {}", strip_explain_query_plan(sql)))
+        self.explain_statement(&format!("EXPLAIN {}", strip_explain_query_plan(sql)))
     }
 
-    fn explain_rows(&self, explanation: &str) -> Option<Program> {
+    fn explain_statement(&self, explanation: &str) -> Option<Program> {
         let mut statement = self.connection.prepare(explanation).ok()?;
         let width = statement.column_count();
         let steps = statement

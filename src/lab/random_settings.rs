@@ -112,7 +112,7 @@ fn call(day: u32, tool: &str, arguments: Value) -> ScheduledCall {
     }
 }
 
-/// Returns a change of all prices by one factor. The routine sets its own prices every week, so the call is repeated.
+/// Returns a call that multiplies all prices by one factor. The routine sets its own prices every week, so the call is repeated.
 fn set_prices(draw: &mut Draws, day: u32, prices: &PerPlan<f64>) -> ScheduledCall {
     let factor = draw.log_uniform(0.6, 1.6);
     let changed: Map<String, Value> = Plan::ALL

@@ -31,7 +31,7 @@ pub enum ParsedLine {
 /// Former names of commands, which still work, and their current names.
 pub const FORMER_NAMES: [(&str, &str); 2] = [("again", "retry"), ("back", "since")];
 
-/// Returns the current name of a command.
+/// Returns the current name of a command that may be given by a former name.
 pub fn current_name(word: &str) -> &str {
     FORMER_NAMES.iter().find(|(former, _)| *former == word).map_or(word, |(_, current)| current)
 }

@@ -61,7 +61,7 @@ pub fn play(session: Session, library: QueryLibrary, style: OutputStyle) -> io::
 #[derive(Debug, Clone, Copy)]
 struct Participant<'a> {
     study: &'a Study,
-    /// The machine's folder of runs.
+    /// Folder of the runs on this machine.
     runs: &'a Path,
     is_hosted: bool,
 }

@@ -127,7 +127,7 @@ impl SessionHost<'_> {
                 step => step,
             };
             match step {
-                NextStep::Consent(text) => self.ask_consent(&visit, &text.text)?,
+                NextStep::Consent(text) => self.ask_for_consent(&visit, &text.text)?,
                 NextStep::Practice { unfinished, may_skip: may_pass } => {
                     self.run_practice(&visit, unfinished, may_pass)?
                 }
@@ -208,7 +208,7 @@ impl SessionHost<'_> {
         }
     }
 
-    fn ask_consent(&mut self, visit: &ParticipantSession, text: &str) -> Result<(), SessionStop> {
+    fn ask_for_consent(&mut self, visit: &ParticipantSession, text: &str) -> Result<(), SessionStop> {
         // Programs receive the text without wrapping.
         let shown = if self.style.json { text.trim().to_owned() } else { to_plain_text(text, TEXT_COLUMNS) };
         self.show_text("consent", &shown)?;

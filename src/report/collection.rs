@@ -50,7 +50,7 @@ impl LabKeys<'_> {
 pub struct CollectionResult {
     /// Tables of all collected runs.
     pub tables: StudyTables,
-    /// Label, seal and path of the archive of each collected run.
+    /// Participant's label, seal and path of the archive, for each collected run.
     pub runs: Vec<(Option<String>, Seal, PathBuf)>,
     /// Problems for the experimenter to check, such as unreadable files.
     pub notes: Vec<CollectNote>,
@@ -84,8 +84,8 @@ pub fn collect(
     let labels_recorded: BTreeSet<&str> =
         runs.iter().filter_map(|run| label_of(run, labels)).map(String::as_str).collect();
     let of_study = |visit: &&FoundVisit| study.is_none_or(|study| visit.line.study == study.digest);
-    let own_visits = visits.iter().filter(of_study).map(|visit| &visit.line);
-    collected.visits = VisitSummary::from_lines(own_visits, &labels_recorded);
+    let study_visits = visits.iter().filter(of_study).map(|visit| &visit.line);
+    collected.visits = VisitSummary::from_lines(study_visits, &labels_recorded);
     collected.tables.add_visits(&visits);
     let mut present: BTreeSet<String> = BTreeSet::new();
     let mut others: BTreeMap<String, (String, String)> = BTreeMap::new();

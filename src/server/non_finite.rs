@@ -13,7 +13,7 @@ const MARK: &str = "\u{1}not a number: ";
 
 /// Parses a body with non-finite literals. Returns the body, in which the literals are strings, and a rejection that
 /// names the first literal. Returns `None` if the body contains no such literal or is invalid for another reason.
-pub fn parse_with_literals(bytes: &[u8]) -> Option<(Value, Rejection)> {
+pub fn parse_with_non_finite_numbers(bytes: &[u8]) -> Option<(Value, Rejection)> {
     let mut value = serde_json::from_str(&mark_literals(std::str::from_utf8(bytes).ok()?)).ok()?;
     let (path, literal) = restore_literals(&mut value)?;
     let argument = path.strip_prefix("args.").unwrap_or(&path).to_owned();
@@ -82,13 +82,13 @@ mod tests {
     #[test]
     fn first_non_finite_literal_is_named() {
         let (value, rejection) =
-            parse_with_literals(br#"{"tool":"t \" NaN","args":{"m":{"a":[1,-Infinity]},"n":NaN}}"#)
+            parse_with_non_finite_numbers(br#"{"tool":"t \" NaN","args":{"m":{"a":[1,-Infinity]},"n":NaN}}"#)
                 .expect("it reads");
         assert_eq!(value, json!({"tool": "t \" NaN", "args": {"m": {"a": [1, "-Infinity"]}, "n": "NaN"}}));
         assert_eq!((rejection.code, rejection.field.as_deref()), ("wrong_type", Some("m.a.1")));
         assert_eq!(rejection.message, "m.a.1 is -Infinity, and must be a finite number");
         for other in ["{\"a\": \"NaN\"", "{\"a\": nan}", "{\"a\": NaNa}", "{\"a\": \"NaN\"}", "\\", "\"\\"] {
-            assert!(parse_with_literals(other.as_bytes()).is_none(), "{other}");
+            assert!(parse_with_non_finite_numbers(other.as_bytes()).is_none(), "{other}");
         }
     }
 }

@@ -174,7 +174,7 @@ pub fn read_study_visits(study: &Study, machines: &[PathBuf]) -> BTreeSet<VisitL
     lines.filter(|line| line.study == study.digest).collect()
 }
 
-/// Returns the lines of a list of visits. Skips lines that cannot be parsed.
+/// Reads the lines of `visits.jsonl`. Skips lines that cannot be parsed.
 pub fn read_visits(path: &Path) -> Vec<VisitLine> {
     let text = read_regular_text_or_empty(path);
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()

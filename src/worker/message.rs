@@ -114,7 +114,7 @@ pub enum Response {
     NotOpened(String, Option<OpenFallback>),
     /// A tool call was executed or rejected.
     ToolCalled(ToolId, Result<Box<Answer>, Rejection>, Arc<DisplayedCompany>),
-    /// A setting change was undone or redone, or this was rejected.
+    /// A setting change was undone or redone, or the request to do so was rejected.
     SettingRestored(&'static str, Result<Vec<SettingChange>, Rejection>, Arc<DisplayedCompany>),
     /// A day was simulated. Contains its figures if the day was simulated for the first time.
     DaySimulated(u32, Option<SimulatedDay>),

@@ -97,7 +97,7 @@ fn is_listed(obstacles: &[RankingObstacle]) -> bool {
     obstacles.iter().all(|obstacle| matches!(obstacle, RankingObstacle::Generation(_)))
 }
 
-/// Returns the finished runs of the folders.
+/// Returns the finished runs in the folders.
 fn finished_runs(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
     let mut finished = Vec::new();
     for folder in folders {

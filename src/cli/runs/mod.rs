@@ -161,7 +161,7 @@ fn print_run(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> 
     let origin = branch_origin(&folder);
     print(&format!(
         "{}\n{}",
-        summary.as_ref().map(|run| run_line(run, origin.as_ref())).unwrap_or_default(),
+        summary.as_ref().map(|run| format_run(run, origin.as_ref())).unwrap_or_default(),
         escape_control_characters(&text)
     ))
 }
@@ -216,11 +216,11 @@ fn print_runs(
         None if list.is_empty() => {
             print(&format!("There are no runs in {} yet; `novamind` starts one.\n", runs.display()))
         }
-        _ => print(&list.iter().map(|(run, origin)| run_line(run, origin.as_ref())).collect::<String>()),
+        _ => print(&list.iter().map(|(run, origin)| format_run(run, origin.as_ref())).collect::<String>()),
     }
 }
 
-fn run_line(run: &RunSummary, origin: Option<&BranchOrigin>) -> String {
+fn format_run(run: &RunSummary, origin: Option<&BranchOrigin>) -> String {
     if let Some(problem) = &run.problem {
         return format!(
             "{}  cannot be read: {}\n",

@@ -11,7 +11,7 @@ const RESIZE_DELAY: Duration = Duration::from_secs(1);
 /// An event to record: its kind, milliseconds without input, and the window size.
 pub type PresenceRecord = (PresenceEvent, Option<u64>, Option<(u16, u16)>);
 
-/// Tracks input and window events.
+/// Determines from input and window events whether the user is present.
 #[derive(Debug, Default)]
 pub struct PresenceWatch {
     idle: IdleWatch,

@@ -33,7 +33,7 @@ const MIN_DESCRIPTION_WIDTH: u16 = 90;
 const DETAIL_ROWS: u16 = 3;
 
 /// Actions that lists support but forms do not.
-const FILTER_ACTIONS: [Action; 2] = [Action::Filter, Action::Sort];
+const LIST_ACTIONS: [Action; 2] = [Action::Filter, Action::Sort];
 
 impl HelpDialog {
     /// Lists the keys of a screen. The keys of the focused pane are first.
@@ -61,7 +61,7 @@ impl HelpDialog {
         let lists = part(
             "lists",
             scope_actions(Scope::List)
-                .filter(|action| scopes.contains(&Scope::List) && !FILTER_ACTIONS.contains(action))
+                .filter(|action| scopes.contains(&Scope::List) && !LIST_ACTIONS.contains(action))
                 .collect(),
         );
         let step = dialog.step().map_or(String::new(), |step| format!(" › {step}"));
@@ -156,7 +156,7 @@ fn screen_sections(panes: &[PaneKeys], replay: bool) -> Vec<HelpSection> {
         if pane_scopes.contains(&scope) {
             // A form has the navigation of a list but cannot be filtered or sorted.
             let is_unusable =
-                |action: &Action| pane_scopes.contains(&Scope::Form) && FILTER_ACTIONS.contains(action);
+                |action: &Action| pane_scopes.contains(&Scope::Form) && LIST_ACTIONS.contains(action);
             let actions = scope_actions(scope).filter(|action| !is_unusable(action)).collect();
             parts.push(HelpSection { name, scopes: pane_scopes.clone(), actions });
         }

@@ -139,7 +139,7 @@ pub trait Dialog {
     /// Returns the actions to show in the footer.
     fn hints(&self) -> Vec<Action>;
 
-    /// Returns the actions to show in the footer, if they depend on the company.
+    /// Returns the actions to show in the footer. Dialogs whose actions depend on the company override this method.
     fn hints_in_context(&self, _: &ScreenContext<'_>) -> Vec<Action> {
         self.hints()
     }

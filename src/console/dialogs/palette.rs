@@ -111,7 +111,7 @@ impl CommandPalette {
         palette
     }
 
-    /// Removes entries that are closed to participants of a study, and adds the withdrawal.
+    /// Removes entries that participants of a study may not use, and adds the entry for withdrawing from the study.
     pub fn for_participant(mut self, has_tour: bool) -> CommandPalette {
         let kept = |action: Action| match action {
             Action::LeaveRun | Action::WriteReport => false,

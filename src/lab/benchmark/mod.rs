@@ -138,7 +138,7 @@ pub struct BenchFigure {
     pub stretch: Option<f64>,
 }
 
-/// A measured value compared with its target.
+/// Whether a measured value meets its target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TargetVerdict {

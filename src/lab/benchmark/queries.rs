@@ -86,7 +86,7 @@ pub fn measure_queries(bench: &BenchContext) -> Result<Samples, BenchError> {
     Ok([slowest.unwrap_or_default(), usage].into_iter().chain(typical).collect())
 }
 
-/// Returns the time until the query result is available, in milliseconds per repetition.
+/// Returns one time per repetition, in milliseconds, until the query result is available.
 fn query_milliseconds(session: &mut Session, sql: &str, repetitions: usize) -> Result<Vec<f64>, BenchError> {
     let once = |_| {
         let started = Instant::now();

@@ -128,7 +128,7 @@ impl Experiment {
             None => BTreeMap::new(),
             Some(store) => {
                 let all: BTreeSet<&str> = keys.iter().map(String::as_str).collect();
-                store.load(&all).map_err(|error| store_error(store, error))?
+                store.load(&all).map_err(|error| to_experiment_error(store, error))?
             }
         };
         Ok(PreparedExperiment { experiment: self, keys, start_cash, known_results: known })
@@ -157,7 +157,7 @@ impl Experiment {
     }
 }
 
-fn store_error(store: &ResultStore, error: io::Error) -> ExperimentError {
+fn to_experiment_error(store: &ResultStore, error: io::Error) -> ExperimentError {
     ExperimentError::Store { path: store.path().to_owned(), error }
 }
 
@@ -223,7 +223,7 @@ impl PreparedExperiment<'_> {
             if let Some(store) = with.store {
                 store
                     .append_result(&self.keys[number], &result)
-                    .map_err(|error| store_error(store, error))?;
+                    .map_err(|error| to_experiment_error(store, error))?;
             }
             played.fetch_add(1, Ordering::Relaxed);
             (with.on_run)();

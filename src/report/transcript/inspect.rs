@@ -55,7 +55,7 @@ pub fn to_inspect(run: &Transcript, agent_context: &AgentContext) -> Value {
         "results": {
             "total_samples": 1,
             "completed_samples": usize::from(run.end.is_some()),
-            "scores": score.iter().map(score_result).collect::<Vec<Value>>(),
+            "scores": score.iter().map(score_to_json).collect::<Vec<Value>>(),
         },
         "stats": { "started_at": created, "completed_at": ended, "model_usage": {} },
         "samples": [{
@@ -96,7 +96,7 @@ fn sample_score(run: &Transcript) -> Option<Value> {
     Some(json!({ "value": end.score?, "explanation": explanation }))
 }
 
-fn score_result(score: &Value) -> Value {
+fn score_to_json(score: &Value) -> Value {
     json!({
         "name": SCORER,
         "scorer": SCORER,

@@ -61,7 +61,7 @@ pub async fn read_object(body: Body) -> Result<BodyFields, ApiResponse> {
     match serde_json::from_slice(&bytes) {
         Ok(Value::Object(fields)) => Ok(BodyFields { fields, rejection: None }),
         Ok(_) => Err(malformed("the body must be a JSON object".to_owned())),
-        Err(error) => match non_finite::parse_with_literals(&bytes) {
+        Err(error) => match non_finite::parse_with_non_finite_numbers(&bytes) {
             Some((Value::Object(fields), refusal)) => Ok(BodyFields { fields, rejection: Some(refusal) }),
             _ => Err(malformed(format!("the body is not valid JSON: {error}"))),
         },

@@ -60,8 +60,8 @@ async fn request_status(
     to_http_response(&state.handle.send(ApiRequest::RequestStatus { id }).await)
 }
 
-/// Returns the rejection of a request whose tool needs a request id, if the request has no valid id or if it contains a
-/// literal such as `NaN`. `literal` is the rejection of this literal.
+/// Checks a request to a tool that needs a request id. Returns a rejection if the id is missing or invalid, or
+/// `literal`, the rejection of a literal such as `NaN` in the request.
 pub fn rejection(tool: &str, id: &Value, literal: Option<&Rejection>) -> Option<Rejection> {
     if !needs_request_id(tool) {
         return None;

@@ -51,7 +51,7 @@ async fn forward_lines(mut forward: DuplexStream, problems: UnboundedSender<Stri
                 }
             }
             Err(error) => {
-                let problem = match non_finite::parse_with_literals(&line) {
+                let problem = match non_finite::parse_with_non_finite_numbers(&line) {
                     Some((message, rejection)) => parse_error(&message["id"], &rejection.message),
                     None => parse_error(&Value::Null, &format!("the message is not valid JSON: {error}")),
                 };

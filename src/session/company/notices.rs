@@ -15,7 +15,7 @@ impl Simulation {
     /// Returns the texts of the notices of the last day or call. Texts of repeated lead losses are empty, because the
     /// database stores repeated losses as one fact.
     pub(crate) fn notice_texts(&self) -> Vec<String> {
-        let mut parties = NoticeParties::from_simulation(self);
+        let mut parties = NoticeEnterprises::from_simulation(self);
         self.facts.notices.iter().map(|notice| self.notice_text(notice, parties.next_party(notice))).collect()
     }
 
@@ -34,15 +34,15 @@ impl Simulation {
 }
 
 /// The enterprises in the notices of a day, by kind of notice, in the order of the notices.
-struct NoticeParties {
+struct NoticeEnterprises {
     new_leads: std::vec::IntoIter<NoticeCustomer>,
     silent_leads: std::vec::IntoIter<NoticeCustomer>,
     timed_out_leads: std::vec::IntoIter<NoticeCustomer>,
     deals: std::vec::IntoIter<NoticeCustomer>,
 }
 
-impl NoticeParties {
-    fn from_simulation(simulation: &Simulation) -> NoticeParties {
+impl NoticeEnterprises {
+    fn from_simulation(simulation: &Simulation) -> NoticeEnterprises {
         let Simulation { facts, world, .. } = simulation;
         let notices =
             |fits: &dyn Fn(&Notice) -> bool| facts.notices.iter().filter(|notice| fits(notice)).count();
@@ -86,7 +86,7 @@ impl NoticeParties {
             })
             .collect();
         let first = |notice: &Notice| matches!(notice, Notice::LeadLostByTimeout { .. });
-        NoticeParties {
+        NoticeEnterprises {
             new_leads: only(asking, notices(&|notice| *notice == Notice::EnterpriseLead)),
             silent_leads: only(ended(EndCause::LeadSilent), notices(&|notice| *notice == Notice::LeadSilent)),
             timed_out_leads: only(ended(EndCause::LeadTimeout), notices(&first)),

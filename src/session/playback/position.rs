@@ -62,6 +62,6 @@ pub struct Chapter {
     pub day: u32,
     /// Recorded lines up to the end of the week, in order.
     pub entries: Vec<RecordView>,
-    /// Number of lines of the chapter that are applied.
+    /// Number of entries of the chapter up to the current position.
     pub applied_entries: usize,
 }

@@ -64,11 +64,12 @@ pub fn branch_not_saved_rejection(error: RunError) -> Rejection {
     Rejection::new("not_saved", error.to_string())
 }
 
-/// Creates a branch with the given lines in a folder next to its parent, and opens the branch.
+/// Creates a branch from the first lines of a run, in a folder next to the run, and opens it.
 ///
 /// # Errors
-/// `not_in_this_mode` for a baseline branch, and for a branch in a mode other than debug if the copied lines change
-/// parameters or the run has a seeded fault; `not_saved`.
+/// - `not_in_this_mode`: the branch would be a baseline run, or it would not be a debug run although the copied lines
+///   change parameters or the run has a seeded fault.
+/// - `not_saved`: the folder cannot be written.
 pub(crate) fn create_branch(
     folder: &Path,
     parent: &Manifest,

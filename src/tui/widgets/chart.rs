@@ -306,10 +306,10 @@ impl Plot<'_> {
             let last = line.points.iter().rev().find(|point| point.1.is_finite())?;
             Some((line.name, last.1, line.role))
         };
-        let name_of_band = |band: &Band| Some((band.name, band.bounds.last()?.2, Role::Text));
+        let band_label = |band: &Band| Some((band.name, band.bounds.last()?.2, Role::Text));
         let lines = self.curves.iter().rev().filter_map(name_of_curve);
         let mut names: Vec<(&str, f64, Role)> = lines
-            .chain(self.band.and_then(name_of_band))
+            .chain(self.band.and_then(band_label))
             .filter(|named_curve| !named_curve.0.is_empty())
             .collect();
         names.truncate(usize::from(place.height));

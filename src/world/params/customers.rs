@@ -179,7 +179,7 @@ pub struct MacroBeta {
     /// Sensitivity of the budget at a billing decision.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub willingness_to_pay: Option<f64>,
-    /// Sensitivity of a new enterprise's reply speed.
+    /// Sensitivity of a new enterprise to the speed of replies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deal_velocity: Option<f64>,
     /// Sensitivity of the drift of seats.

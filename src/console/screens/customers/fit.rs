@@ -192,7 +192,7 @@ fn describe_plan_fit(fit: &Fit, plan: Plan) -> String {
     )
 }
 
-/// Compares a plan with a requirement.
+/// Describes whether a plan meets a requirement.
 fn fit_verdict(fit: &Fit, plan: Plan, concern: FitCriterion) -> String {
     if let Some(missing) = fit.certain_gap(plan, concern) {
         return match concern {

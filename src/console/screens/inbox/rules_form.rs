@@ -34,7 +34,7 @@ fn default_rules(company: &DisplayedCompany) -> String {
 #[derive(Debug, Clone)]
 pub struct RulesForm {
     pub field: TextField,
-    /// Whether key presses are typed into the field.
+    /// Whether key presses edit the text of the field.
     pub is_typing: bool,
     /// The effect of the rules, or the error in the text.
     batch: Result<RuleBatch, RuleError>,

@@ -204,7 +204,7 @@ impl ResultChart {
     /// Draws the summary and the chart below the summary.
     pub fn draw(&self, canvas: &mut Canvas<'_>, placement: PanePlacement, rows: &QueryResult, table: &Table) {
         let area = placement.area;
-        // The chart needs a minimum of rows below the summary.
+        // The chart needs a minimum number of rows below the summary.
         let number = self.y_columns.len().min(usize::from(area.height.saturating_sub(5)));
         for (row, (series, column)) in row_rects(area).zip(self.y_columns.iter().enumerate().take(number)) {
             canvas.draw_text(row, self.series_symbol(series), Role::Series(series));

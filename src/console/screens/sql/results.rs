@@ -385,7 +385,7 @@ fn result_title(rows: &QueryResult, took: Duration) -> String {
     format!("Result · {of}{} · {time}", export::format_row_count(rows.rows.len()))
 }
 
-/// Estimates the memory of rows and of their table cells. The table cells contain only the start of long texts.
+/// Estimates the memory that rows and their table cells use. The table cells contain only the start of long texts.
 fn estimate_bytes(rows: &QueryResult) -> usize {
     const BYTES_PER_CELL: usize = 128;
     let text = |cell: &Cell| if let Cell::Text(text) = cell { text.len() + text.len().min(400) } else { 0 };

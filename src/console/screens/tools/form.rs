@@ -46,7 +46,7 @@ pub struct ToolForm {
     /// The check of the call, if it has arrived.
     pub preview: Option<Result<Preview, Rejection>>,
     checking: Pending<PreviewCallQuestion>,
-    /// The arguments that were sent last, for a tool whose form keeps its values.
+    /// The arguments of the last call; only for tools whose form keeps its values after a call.
     sent_arguments: Option<Value>,
     pub answer: Option<Result<Value, Rejection>>,
     /// Earlier calls of the tool, the newest first, as decision day and arguments.

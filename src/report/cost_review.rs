@@ -26,14 +26,20 @@ pub fn income_and_cost_lines(seen: &Observation) -> Vec<String> {
         lines.push("No income yet".to_owned());
     } else if days > 0 {
         lines.push(format!(
-            "Cash in {} at these costs: {} expected, 80% range {} to {}",
+            "Cash in {} at these costs{}: {} expected, 80% range {} to {}",
             pluralize(days.div_ceil(7), "week"),
+            // The range was measured without large changes of advertising.
+            seen.outlook.advertising_change.map_or("", |_| ", without the effect of the changed ads"),
             format_money(seen.outlook.expected_cash(days)),
             format_money(low),
             format_money(high)
         ));
     }
-    lines.push(capitalize(&describe_runway(&seen.runway)));
+    let premise = match seen.outlook.advertising_change {
+        Some(change) if change.added() > 0.0 => ", if the added ads bring no signups",
+        _ => "",
+    };
+    lines.push(format!("{}{premise}", capitalize(&describe_runway(&seen.runway))));
     lines
 }
 

@@ -46,8 +46,8 @@ pub use figures::estimates::{Estimates, true_value_range};
 pub use figures::groups::{GroupWeek, PaidLeads, PlanRevenue};
 pub use figures::journal::JournalEntry;
 pub use figures::outlook::{
-    BillingCalendar, CommittedCosts, ErrorIntervals, ExpectedFlows, ForecastError, GrowthStage, Level,
-    MAX_RUNWAY_DAYS, Outlook, Runway, StageInterval,
+    AdvertisingChange, BillingCalendar, CommittedCosts, ErrorIntervals, ExpectedFlows, ForecastError,
+    GrowthStage, Level, MAX_RUNWAY_DAYS, Outlook, Runway, StageInterval,
 };
 pub use figures::scored_forecast::{
     ForecastScore, IntervalPosition, ScoredForecast, cash_at_week_end, submitted_forecasts,

@@ -27,6 +27,9 @@ const MEAN_DAY_SHARE: f64 = 0.936;
 pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let seen = &situation.observation;
     let weeks = seen.runway_weeks.filter(|weeks| *weeks < MIN_RUNWAY_WEEKS)?;
+    if let Some(item) = diagnose_added_ads(situation, weeks) {
+        return Some(item);
+    }
     let flows = seen.expected_flows();
     let out = seen.committed * 7.0 + flows.variable;
     let SpendingBudget { name, dollars, reduced_dollars: kept, target: place } = largest_budget(situation);
@@ -54,6 +57,30 @@ pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<Action
         target: place,
         at_risk: seen.cash.max(0.0) + situation.upcoming_revenue(),
         is_urgent: true,
+    })
+}
+
+/// Reports the time for which cash lasts if a raised advertising budget adds no signups. Returns `None` if the company
+/// has not raised the budget, or if cash would be low without the raise.
+fn diagnose_added_ads(situation: &DiagnosisContext<'_>, weeks: f64) -> Option<ActionItem> {
+    let seen = &situation.observation;
+    let change = seen.outlook.advertising_change.filter(|change| change.added() > 0.0)?;
+    let without = seen.outlook.runway_with_saving(change.added(), seen.days_left());
+    if without.is_some_and(|weeks| weeks < MIN_RUNWAY_WEEKS) {
+        return None;
+    }
+    Some(ActionItem {
+        problem: Problem::Runway,
+        text: format!(
+            "You raised ads from {} to {} a day. If they add no signups, cash lasts {}.",
+            format_money(change.before),
+            format_money(change.now),
+            pluralize(weeks as u32, "week")
+        ),
+        proposal: Some("Check after the next week whether signups have risen enough.".to_owned()),
+        target: ActionTarget::Ledger,
+        at_risk: seen.cash.max(0.0),
+        is_urgent: false,
     })
 }
 

@@ -418,6 +418,26 @@ fn short_runway_is_the_first_action_item() {
 }
 
 #[test]
+fn runway_after_a_raise_of_ads_names_its_premise() {
+    let mut session = play_company(3, 3e6, &healthy_calls(), 10);
+    let budget = session.company().observe().cash / 40.0;
+    let ads = json!({ "targeted_spend": { "search_ads": { "S1": budget.floor() } } });
+    session.call("set_targeted_ad_spend", &ads, Via::Script).expect("it is set");
+    let need = assert_first_problem(
+        &session,
+        Problem::Runway,
+        &["You raised ads from ", "If they add no signups, cash"],
+    );
+    assert!(!need.is_urgent, "{need:?}");
+    let seen = session.company().observe();
+    let coverage = seen.describe_coverage().expect("a premise");
+    assert!(coverage.starts_with("You changed advertising from ") && !coverage.contains('%'), "{coverage}");
+    let lines = crate::cost_review::income_and_cost_lines(&seen);
+    assert!(lines.iter().any(|line| line.contains("without the effect of the changed ads")), "{lines:?}");
+    assert!(lines.iter().any(|line| line.ends_with("if the added ads bring no signups")), "{lines:?}");
+}
+
+#[test]
 fn healthy_company_has_no_action_items() {
     let session = play_company(3, 3e6, &healthy_calls(), 10);
     let week = session.weeks().last().expect("a week");

@@ -10,6 +10,7 @@ use crate::figures::changes::SettingChange;
 use crate::figures::dashboard::{self, WaitingLeads};
 use crate::figures::outlook::{ErrorIntervals, ExpectedFlows, Outlook, Runway};
 use crate::figures::week::week_of_day;
+use novamind_base::formatting::dollars;
 use novamind_record::figures::{CategoryTotals, WeekFigures};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::RunEndReason;
@@ -147,8 +148,17 @@ impl Observation {
     }
 
     /// Describes how often ranges of naive forecasts contained the actual cash of companies like this one. Returns
-    /// `None` if too few companies were measured or the ranges contained too few outcomes.
+    /// `None` if too few companies were measured or the ranges contained too few outcomes. After a large change of the
+    /// advertising budget, describes what the ranges leave out, because the measured coverage does not apply.
     pub fn describe_coverage(&self) -> Option<String> {
+        if let Some(change) = self.outlook.advertising_change {
+            return Some(format!(
+                "You changed advertising from {} to {} a day. The naive forecasts include its cost, but not the signups it \
+                 adds or removes, so the ranges are too narrow",
+                dollars(change.before.round()),
+                dollars(change.now.round())
+            ));
+        }
         ErrorIntervals::bundled().describe_coverage(self.outlook.stage, self.days_left())
     }
 

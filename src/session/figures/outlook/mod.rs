@@ -8,6 +8,7 @@ mod growth_stage;
 
 use novamind_record::figures::WeekFigures;
 use novamind_tools::Forecast;
+use novamind_world::events::Category;
 
 pub use billing_calendar::BillingCalendar;
 pub use error_intervals::{ErrorIntervals, ForecastError, Level, StageInterval};
@@ -24,6 +25,9 @@ pub const MAX_RUNWAY_DAYS: u32 = 182;
 pub struct Outlook {
     /// Stage of the company, which determines the width of the ranges.
     pub stage: GrowthStage,
+    /// Change of the advertising budget since the last week, if it is large. The outlook does not include the signups
+    /// that result from the change.
+    pub advertising_change: Option<AdvertisingChange>,
     path: CashPath,
     /// Distances from the expected cash to the endpoints of each range by day, dollars.
     widths: [Vec<[f64; 2]>; 2],
@@ -36,6 +40,32 @@ pub struct CommittedCosts {
     pub total: f64,
     /// Advertising alone.
     pub advertising: f64,
+}
+
+/// A large change of the advertising budget since the last week.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AdvertisingChange {
+    /// Spending of the last week, dollars per day.
+    pub before: f64,
+    /// Current budget, dollars per day.
+    pub now: f64,
+}
+
+impl AdvertisingChange {
+    /// Ratio of the larger to the smaller budget from which a change is large.
+    const MIN_RATIO: f64 = 1.25;
+
+    fn since(weeks: &[WeekFigures], now: f64) -> Option<AdvertisingChange> {
+        let week = weeks.last()?;
+        let before = -week.booked.category_total(Category::Advertising) / f64::from(week.days_run.max(1));
+        let is_large = now.max(before) > AdvertisingChange::MIN_RATIO * now.min(before);
+        is_large.then_some(AdvertisingChange { before, now })
+    }
+
+    /// Returns the additional spending in dollars per day; negative after a reduction.
+    pub fn added(self) -> f64 {
+        self.now - self.before
+    }
 }
 
 /// Expected flows of the next weeks, dollars per week.
@@ -74,7 +104,8 @@ impl Outlook {
         let path = CashPath::new(cash, costs.total, calendar, weeks, days);
         let widths = [Level::Central80, Level::Central95]
             .map(|level| ErrorIntervals::bundled().widths(stage, level, &path));
-        Outlook { stage, path, widths }
+        let advertising_change = AdvertisingChange::since(weeks, costs.advertising);
+        Outlook { stage, advertising_change, path, widths }
     }
 
     /// Returns the expected cash after a number of days. Cash below zero ends a run, so the value is not negative.

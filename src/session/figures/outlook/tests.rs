@@ -1,6 +1,5 @@
 use super::*;
 use novamind_record::figures::CategoryTotals;
-use novamind_world::events::Category;
 
 const HORIZONS: [u32; 4] = [7, 28, 84, 182];
 const PERIOD: usize = 30;
@@ -32,6 +31,21 @@ fn steady_outlook(cash: f64, daily_bill: f64, committed: f64) -> Outlook {
         BillingCalendar { individuals: vec![daily_bill; PERIOD], ..BillingCalendar::new(PERIOD as u32) };
     let weeks = weeks_with_payments(&[7.0 * daily_bill; 12]);
     Outlook::new(cash, costs(committed), &calendar, &weeks, &HORIZONS)
+}
+
+#[test]
+fn large_change_of_advertising_is_stated() {
+    let change = |spent: f64, now: f64| {
+        let mut week = weeks_with_payments(&[500.0]).remove(0);
+        week.booked.add(Category::Advertising, -7.0 * spent);
+        AdvertisingChange::since(&[week], now).map(AdvertisingChange::added)
+    };
+    assert_eq!(change(0.0, 0.0), None);
+    assert_eq!(change(1_000.0, 1_200.0), None);
+    assert_eq!(change(1_000.0, 1_300.0), Some(300.0));
+    assert_eq!(change(1_000.0, 0.0), Some(-1_000.0));
+    assert_eq!(change(0.0, 50.0), Some(50.0));
+    assert_eq!(AdvertisingChange::since(&[], 50.0), None);
 }
 
 #[test]

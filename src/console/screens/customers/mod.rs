@@ -133,10 +133,9 @@ impl Customers {
         company.observation.known_groups.get(self.open_group.or(self.table.selected())?).copied()
     }
 
-    /// Requests the curve of the open group if it is missing or outdated.
+    /// Requests the curve of the open or selected group if it is missing or outdated.
     fn request_curve(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
-        let group = self.open_group.and_then(|open| company.observation.known_groups.get(open).copied());
-        group.map_or_else(Vec::new, |group| self.curve.request(group))
+        self.group(company).map_or_else(Vec::new, |group| self.curve.request(group))
     }
 
     fn change_group(&mut self, other: impl Fn(usize) -> usize, company: &DisplayedCompany) {

@@ -199,6 +199,11 @@ impl Table {
         self.column
     }
 
+    /// Returns the indexes of the columns that are not hidden, in display order.
+    pub fn displayed_columns(&self) -> &[usize] {
+        &self.arranged
+    }
+
     /// Selects a column. If the index is too high, selects the last column.
     pub fn select_column(&mut self, column: usize) {
         self.column = column.min(self.columns.len().saturating_sub(1));

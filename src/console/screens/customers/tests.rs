@@ -285,6 +285,18 @@ fn list_requests_the_curve_of_the_selected_group() {
 }
 
 #[test]
+fn tour_leads_to_the_cancellations_column() {
+    let (_, company, mut screen) = played_screen::<Customers>(4);
+    let facts = screen.tour_facts(&company);
+    for _ in 0..facts.columns_to_cancellations {
+        handle_action(&mut screen, Action::Right, &company);
+    }
+    let column = screen.table.selected_column();
+    assert_eq!(screen.table.columns()[column].title, facts.cancellations_heading);
+    assert_eq!((facts.cancellations_heading, screen.tour_facts(&company).columns_to_cancellations), ("cancelled", 0));
+}
+
+#[test]
 fn narrow_study_shows_every_range() {
     let (_, company, mut screen) = played_screen::<Customers>(2);
     screen.show_group(group("S1"), &company);

@@ -201,6 +201,8 @@ impl Social {
         if let Some(number) = self.reply_to {
             arguments["reply_to_post_id"] = number.into();
         }
+        // The confirmation follows. If the user cancels, the next keys must not be typed into the post.
+        self.editing = false;
         vec![Effect::Ask(self.pending_call.ask(PreviewCallQuestion { tool: POST_TOOL, arguments }))]
     }
 

@@ -181,6 +181,7 @@ fn rejected_post_keeps_the_draft() {
     handle_action(&mut screen, Action::Compose, &company);
     type_draft(&mut screen, &company, "Again");
     handle_action(&mut screen, Action::SendPost, &company);
+    assert!(screen.edited_text().is_none(), "keys after a cancelled question are not typed into the post");
     let refused = || Err(Rejection::new("already_posted", "you have already posted"));
     screen.pending_call.set_answer(refused());
     let effects = with_context(&company, |context| screen.take_answers(context));

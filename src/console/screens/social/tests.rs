@@ -202,6 +202,10 @@ fn viewed_posts_are_not_new() {
     assert_eq!((screen.unseen_count(), week > 0), (week, true));
     screen.mark_seen();
     assert_eq!(screen.unseen_count(), 0);
+    // A later session counts all posts since the screen was viewed, not only those of the last week.
+    (screen.newest_seen_post, screen.last_viewed_day) = (None, Some(0));
+    assert_eq!(screen.unseen_count(), screen.others.len());
+    assert!(screen.others.len() > week);
 }
 
 #[test]

@@ -101,11 +101,9 @@ fn describe_detail(detail: &CauseDetail) -> String {
             count(*before),
             count(*now)
         ),
-        CauseDetail::RenewalsCancelled { bills, cancelled } => format!(
-            "without the other causes: {} of {} due are cancelled",
-            count(*cancelled),
-            count(*bills)
-        ),
+        CauseDetail::RenewalsCancelled { bills, cancelled } => {
+            format!("without the other causes: {} of {} due are cancelled", count(*cancelled), count(*bills))
+        }
         CauseDetail::BillsDue { bills: [before, now], dollars: [dollars_before, dollars_now] } => format!(
             "without the other causes, at the mean share paid: {} → {} due ({} → {})",
             count(*before),

@@ -78,8 +78,7 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         .enumerate()
         .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
         .collect();
-    let halves: Vec<String> =
-        prices.iter().map(|(plan, price)| format!("{plan} ${price}")).collect();
+    let halves: Vec<String> = prices.iter().map(|(plan, price)| format!("{plan} ${price}")).collect();
     // The form contains half of the estimate. The sentence states the estimate, because it differs from the middle of
     // the displayed range.
     let texts: Vec<String> = budgets

@@ -135,7 +135,9 @@ impl NewRunForm {
             }
             None => {
                 let row = FORM_ROWS[self.selected_row].0;
-                vec![Effect::ShowError(format!("{row} is not a number; select Seed, Days or Starting cash first"))]
+                vec![Effect::ShowError(format!(
+                    "{row} is not a number; select Seed, Days or Starting cash first"
+                ))]
             }
         }
     }

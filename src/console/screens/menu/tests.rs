@@ -257,7 +257,9 @@ fn form_shows_the_selected_scenario() {
     menu.handle_action(Action::NewRun);
     menu.form.selected_row = 1;
     let digit = KeyEvent::new(KeyCode::Char('4'), KeyModifiers::NONE);
-    assert!(matches!(&menu.handle_key(&digit)[..], [Effect::ShowError(text)] if text.starts_with("Scenario is not")));
+    assert!(
+        matches!(&menu.handle_key(&digit)[..], [Effect::ShowError(text)] if text.starts_with("Scenario is not"))
+    );
     assert!(menu_text(&menu, 80, 23).contains("left, right and enter change the scenario"));
     let configuration = Configuration::bundled();
     menu.form.selected_row = 1;

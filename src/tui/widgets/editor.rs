@@ -187,7 +187,7 @@ mod tests {
     fn text_above_the_window_is_reached_by_scrolling() {
         let editor = &mut TextEditor::with_text("first words of a wrapped line\n\n\n\n\n\n\n.");
         let area = Rect::new(0, 0, 12, 4);
-        let mut top_row = |editor: &mut TextEditor, action: Option<ListAction>| {
+        let top_row = |editor: &mut TextEditor, action: Option<ListAction>| {
             if let Some(action) = action {
                 editor.scroll(action, area.height.into());
             }

@@ -245,7 +245,7 @@ actions! {
         Cash "cash" "Cash" "Show income and costs."
         Customers "customers" "Customers" "Show the customer groups."
         Product "product" "Product" "Show quality, capacity, issues and R&D."
-        Social "social" "Social" "Read the social feed and your own posts."
+        Social "social" "Social" "Read the social feed and your own posts. ● counts posts since your last visit."
         Inbox "inbox" "Inbox" "Negotiate with enterprises."
         Market "market" "Market" "Show groups, studies, the economy and competitors."
         Tools "tools" "Tools" "Show a form for every tool."

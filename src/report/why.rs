@@ -89,6 +89,7 @@ pub fn format_signed_change(unit: FigureUnit, change: f64) -> String {
     }
 }
 
+/// Describes a detail. The premise of a figure precedes the figure, because narrow windows cut the end of the text.
 fn describe_detail(detail: &CauseDetail) -> String {
     match detail {
         CauseDetail::Setting(change) => describe_change(change),
@@ -96,24 +97,22 @@ fn describe_detail(detail: &CauseDetail) -> String {
             format!("compared with a simulation without it on days {first} to {last}")
         }
         CauseDetail::RenewalsDue { bills: [before, now] } => format!(
-            "{} → {} due, at the mean cancellation rate without the other causes",
+            "without the other causes, at the mean cancellation rate: {} → {} due",
             count(*before),
             count(*now)
         ),
-        CauseDetail::RenewalsCancelled { bills, cancelled } => format!(
-            "{} due, of which {} are cancelled without the other causes",
-            count(*bills),
-            count(*cancelled)
-        ),
+        CauseDetail::RenewalsCancelled { bills, cancelled } => {
+            format!("without the other causes: {} of {} due are cancelled", count(*cancelled), count(*bills))
+        }
         CauseDetail::BillsDue { bills: [before, now], dollars: [dollars_before, dollars_now] } => format!(
-            "{} → {} due ({} → {}), at the mean share paid without the other causes",
+            "without the other causes, at the mean share paid: {} → {} due ({} → {})",
             count(*before),
             count(*now),
             dollars(*dollars_before),
             dollars(*dollars_now)
         ),
         CauseDetail::IssuesAtRenewal { shares: [before, now] } => format!(
-            "{} → {} of those due had an open issue, valued by its age, without the other causes",
+            "without the other causes: {} → {} of those due had an open issue, valued by its age",
             percent(*before, 0),
             percent(*now, 0)
         ),
@@ -210,19 +209,19 @@ mod tests {
             ),
             (
                 CauseDetail::RenewalsDue { bills: [671, 1750] },
-                "671 → 1,750 due, at the mean cancellation rate without the other causes",
+                "without the other causes, at the mean cancellation rate: 671 → 1,750 due",
             ),
             (
                 CauseDetail::RenewalsCancelled { bills: 1750, cancelled: 80 },
-                "1,750 due, of which 80 are cancelled without the other causes",
+                "without the other causes: 80 of 1,750 due are cancelled",
             ),
             (
                 CauseDetail::BillsDue { bills: [671, 1750], dollars: [8_120.0, 21_000.4] },
-                "671 → 1,750 due ($8,120 → $21,000), at the mean share paid without the other causes",
+                "without the other causes, at the mean share paid: 671 → 1,750 due ($8,120 → $21,000)",
             ),
             (
                 CauseDetail::IssuesAtRenewal { shares: [0.2, 0.75] },
-                "20% → 75% of those due had an open issue, valued by its age, without the other causes",
+                "without the other causes: 20% → 75% of those due had an open issue, valued by its age",
             ),
         ];
         for (detail, words) in cases {

@@ -78,11 +78,15 @@ impl App {
         let Stage::Run(run) = &mut self.stage else { return };
         match &mut run.tour {
             Some(tour) if tour.is_step_done(&run.company) => tour.continue_to_next_step(),
-            Some(_) => {
+            Some(tour) => {
                 let close = self.keys.label(Action::TourClose).unwrap_or_default();
-                self.show_error(format!(
-                    "this step is not done: press the keys after →; {close} closes the tour"
-                ));
+                // The key that continues is among the keys after →, so the message names the first key.
+                let task = match tour.key_groups().first() {
+                    Some(group) if group.presses.is_empty() => group.effect.clone(),
+                    Some(group) => format!("press {} first", group.label()),
+                    None => "press the keys after →".to_owned(),
+                };
+                self.show_error(format!("this step is not done: {task}; {close} closes the tour"));
             }
             None => self.show_error("no tour is shown"),
         }

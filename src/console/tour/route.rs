@@ -75,6 +75,8 @@ pub struct CustomersFacts {
     pub rows_to_example: isize,
     /// Columns from the selected column to the cancellations column. Negative if that column is on the left.
     pub columns_to_cancellations: isize,
+    /// Heading of the cancellations column.
+    pub cancellations_heading: &'static str,
 }
 
 impl CustomersFacts {
@@ -347,7 +349,8 @@ impl Router<'_> {
         ));
         let columns = customers.columns_to_cancellations;
         let sideways = action_for_sign(columns, Action::Right, Action::Left);
-        route.extend(self.repeated(sideways, columns.unsigned_abs(), "to the column \"left\""));
+        let to_column = format!("to the column \"{}\"", customers.cancellations_heading);
+        route.extend(self.repeated(sideways, columns.unsigned_abs(), &to_column));
         route.push(self.group(&[Action::Why], "why"));
         route
     }

@@ -78,6 +78,7 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         .enumerate()
         .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
         .collect();
+    let halves: Vec<String> = prices.iter().map(|(plan, price)| format!("{plan} ${price}")).collect();
     // The form contains half of the estimate. The sentence states the estimate, because it differs from the middle of
     // the displayed range.
     let texts: Vec<String> = budgets
@@ -92,8 +93,9 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         problem: Problem::NoPrice,
         text: "No plan has a price. A plan without a price is free, so no one pays.".to_owned(),
         proposal: Some(format!(
-            "Mean monthly budgets: {}. The form proposes half of each estimate.",
-            texts.join(", ")
+            "Mean monthly budgets: {}. Half of each estimate: {}.",
+            texts.join(", "),
+            halves.join(", ")
         )),
         target: ActionTarget::Call(ToolId::SetPrices, Value::Object(prices)),
         at_risk: situation.upcoming_costs() + situation.upcoming_revenue(),

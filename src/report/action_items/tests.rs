@@ -79,7 +79,7 @@ fn missing_prices_are_found() {
     let need = assert_first_problem(
         &play_company(3, 1e6, &[], 0),
         Problem::NoPrice,
-        &["No plan has a price", "Mean monthly budgets: S1 $", "The form proposes half of each estimate"],
+        &["No plan has a price", "Mean monthly budgets: S1 $", "Half of each estimate: A $"],
     );
     let ActionTarget::Call(ToolId::SetPrices, arguments) = &need.target else { panic!("{need:?}") };
     let proposal = need.proposal.as_deref().unwrap_or_default();

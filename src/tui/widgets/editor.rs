@@ -1,11 +1,14 @@
 //! A multi-line text editor, based on the text area of a library.
 
+use std::cmp::Ordering;
+
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::widgets::Widget;
 use tui_textarea::{CursorMove, TextArea, WrapMode};
 
+use super::ListAction;
 use crate::canvas::Canvas;
 use crate::theme::Role;
 
@@ -119,6 +122,32 @@ impl TextEditor {
         self.area.move_cursor(CursorMove::Jump(number(row), number(column)));
     }
 
+    /// Scrolls the text in a window of `page` rows, for a text that is not being edited. The cursor moves to a row that
+    /// becomes visible.
+    pub fn scroll(&mut self, action: impl Into<Option<ListAction>>, page: usize) {
+        let top = usize::from(self.scroll_offset().0);
+        let target = match action.into() {
+            Some(ListAction::Up | ListAction::ScrollUp) => top.saturating_sub(1),
+            Some(ListAction::Down | ListAction::ScrollDown) => top + page,
+            Some(ListAction::PageUp) => top.saturating_sub(page),
+            Some(ListAction::PageDown) => top + (2 * page).saturating_sub(1),
+            Some(ListAction::First) => 0,
+            Some(ListAction::Last) => usize::MAX,
+            _ => return,
+        };
+        loop {
+            let row = self.area.screen_cursor().row;
+            match row.cmp(&target) {
+                Ordering::Less => self.area.move_cursor(CursorMove::Down),
+                Ordering::Equal => return,
+                Ordering::Greater => self.area.move_cursor(CursorMove::Up),
+            }
+            if self.area.screen_cursor().row == row {
+                return;
+            }
+        }
+    }
+
     /// Deletes a number of characters before the cursor.
     pub fn delete_before_cursor(&mut self, count: usize) {
         for _ in 0..count {
@@ -146,5 +175,31 @@ impl TextEditor {
             let y = area.y + (cursor.row as u16).saturating_sub(top).min(area.height - 1);
             canvas.cursor = Some(Position::new(x, y));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ratatui::buffer::Buffer;
+
+    #[test]
+    fn text_above_the_window_is_reached_by_scrolling() {
+        let editor = &mut TextEditor::with_text("first words of a wrapped line\n\n\n\n\n\n\n.");
+        let area = Rect::new(0, 0, 12, 4);
+        let top_row = |editor: &mut TextEditor, action: Option<ListAction>| {
+            if let Some(action) = action {
+                editor.scroll(action, area.height.into());
+            }
+            let mut buffer = Buffer::empty(area);
+            (&editor.area).render(area, &mut buffer);
+            (0..area.width).map(|x| buffer[(x, 0)].symbol().to_owned()).collect::<String>().trim().to_owned()
+        };
+        assert_eq!(top_row(editor, None), "");
+        let ups: Vec<String> = (0..6).map(|_| top_row(editor, Some(ListAction::Up))).collect();
+        assert_eq!(ups, ["", "", "", "line", "of a wrapped", "first words"].map(str::to_owned));
+        assert_eq!(top_row(editor, Some(ListAction::Last)), "");
+        assert!(top_row(editor, Some(ListAction::First)).starts_with("first"));
+        assert_ne!(top_row(editor, Some(ListAction::Down)), "first words");
     }
 }

@@ -199,6 +199,11 @@ impl Table {
         self.column
     }
 
+    /// Returns the indexes of the columns that are not hidden, in display order.
+    pub fn displayed_columns(&self) -> &[usize] {
+        &self.arranged
+    }
+
     /// Selects a column. If the index is too high, selects the last column.
     pub fn select_column(&mut self, column: usize) {
         self.column = column.min(self.columns.len().saturating_sub(1));
@@ -481,10 +486,31 @@ impl Table {
             let whole =
                 |(place, (_, shown)): &(usize, (u16, u16))| *place == selected && *shown == widths[*place];
             if columns.iter().any(whole) || from >= self.arranged.len() || from >= selected {
+                let columns = self.widen_shrunk_columns(columns, width);
                 return columns.into_iter().map(|(place, cell)| (self.arranged[place], cell)).collect();
             }
             from += 1;
         }
+    }
+
+    /// Gives the width that the visible columns leave unused to columns that were shrunk, from the left.
+    fn widen_shrunk_columns(
+        &self,
+        mut columns: Vec<(usize, (u16, u16))>,
+        width: u16,
+    ) -> Vec<(usize, (u16, u16))> {
+        let Some((last, (x, shown))) = columns.last() else { return columns };
+        let mark = if last + 1 < self.arranged.len() { COLUMN_MARK_WIDTH } else { 0 };
+        let mut unused = width.saturating_sub(x + shown + mark);
+        let mut shift = 0;
+        for (place, (x, shown)) in &mut columns {
+            *x += shift;
+            let wider = self.widths[self.arranged[*place]].saturating_sub(*shown).min(unused);
+            *shown += wider;
+            shift += wider;
+            unused -= wider;
+        }
+        columns
     }
 
     /// Returns the pinned columns and those columns from position `from` on that fit into a width, as positions in

@@ -70,10 +70,11 @@ fn visible_columns(company: &DisplayedCompany) -> impl Iterator<Item = &'static 
     COLUMNS.iter().filter(move |(what, ..)| has_hidden || !matches!(what, GroupColumn::TrueValue(_)))
 }
 
-/// Returns the index of the column with cancellations.
-pub fn cancellations_column(company: &DisplayedCompany) -> usize {
-    let is_wanted = |(what, ..): &(GroupColumn, &str, &str)| *what == GroupColumn::Cancellations;
-    visible_columns(company).position(is_wanted).unwrap_or_default()
+/// Returns the index and the heading of the column with cancellations.
+pub fn cancellations_column(company: &DisplayedCompany) -> (usize, &'static str) {
+    let is_wanted = |(_, (what, ..)): &(usize, &(GroupColumn, &str, &str))| *what == GroupColumn::Cancellations;
+    let found = visible_columns(company).enumerate().find(is_wanted);
+    found.map_or((0, ""), |(index, (_, heading, _))| (index, *heading))
 }
 
 pub fn columns(company: &DisplayedCompany) -> Vec<TableColumn> {

@@ -1,4 +1,4 @@
-//! Fit of the open group: its participation curve with the plans, estimated and measured conversion, and each plan
+//! Fit of the open or selected group: its participation curve with the plans, estimated and measured conversion, and each plan
 //! compared with the estimated needs.
 
 use ratatui::layout::Rect;
@@ -70,8 +70,9 @@ impl Pane<Customers> for FitPane {
         let Some(fit) = customers.group(company).and_then(|group| company.fit(group)) else { return };
         let tier = |plan: Plan| format_number(company.current_setting(ToolId::SetModelTiers, plan.id()));
         let (area, curve) = (placement.area, customers.curve.of_group(fit.group));
-        let is_requested = customers.open_group.is_some();
-        let lines = fit_lines(fit, curve, is_requested, area.width as usize, &tier);
+        let has_chart = has_room_for_chart(area) && matches!(curve, Some(Ok(_)));
+        let state = CurveState { curve, is_requested: customers.curve.is_requested(fit.group), has_chart };
+        let lines = fit_lines(fit, &state, area.width as usize, &tier);
         let chart = match curve {
             Some(Ok(explorer)) => {
                 let rows = chart_rows(area, lines.len());
@@ -95,9 +96,13 @@ impl Pane<Customers> for FitPane {
     }
 }
 
+fn has_room_for_chart(area: Rect) -> bool {
+    area.height >= MIN_ROWS_WITH_CHART && area.width >= MIN_CHART_WIDTH
+}
+
 /// Returns the height of the chart above `lines` lines of text, or 0 if the area is too small for a chart.
 fn chart_rows(area: Rect, lines: usize) -> u16 {
-    if area.height < MIN_ROWS_WITH_CHART || area.width < MIN_CHART_WIDTH {
+    if !has_room_for_chart(area) {
         return 0;
     }
     let rest = area.height.saturating_sub(lines as u16);
@@ -109,15 +114,19 @@ struct FitLine {
     role: Role,
 }
 
-/// Returns all lines of the pane, at most `width` columns wide: the estimated and the measured conversion, the needs of
-/// the group, the plans, and the leads. `is_requested` returns whether a missing curve will arrive.
-fn fit_lines(
-    fit: &Fit,
-    curve: Option<&Result<CurveExplorer, Rejection>>,
+/// The participation curve of the group, as far as it has arrived.
+struct CurveState<'a> {
+    curve: Option<&'a Result<CurveExplorer, Rejection>>,
+    /// Whether a missing curve will arrive.
     is_requested: bool,
-    width: usize,
-    tier: &dyn Fn(Plan) -> String,
-) -> Vec<FitLine> {
+    /// Whether the chart of the curve is drawn above the text.
+    has_chart: bool,
+}
+
+/// Returns all lines of the pane, at most `width` columns wide: the estimated and the measured conversion, the needs of
+/// the group, the plans, and the leads.
+fn fit_lines(fit: &Fit, state: &CurveState<'_>, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine> {
+    let CurveState { curve, is_requested, has_chart } = *state;
     let company = fit.group.is_enterprise();
     let mut lines = Vec::new();
     let mut add_rows = |name: &str, text: &str, role: Role| {
@@ -162,11 +171,14 @@ fn fit_lines(
         }
         None => add_rows("leads", "no week has been simulated", Role::Dim),
     }
+    let legend = match has_chart {
+        true => ": the curve is the quality that half of the leads accept at a price, the shaded area is 10 to 90 %.",
+        false => ".",
+    };
     add_rows(
         "",
         &format!(
-            "Needs are the group's means (±{}). Customers differ, and require more quality at a higher price: the curve is \
-             the quality that half of the leads accept at a price, the shaded area is 10 to 90 %.",
+            "Needs are the group's means (±{}). Customers differ, and require more quality at a higher price{legend}",
             percent(fit.max_relative_error, 0)
         ),
         Role::Dim,

@@ -1,4 +1,4 @@
-//! The participation curve of the open group, as estimated by market studies.
+//! The participation curve of the open or selected group, as estimated by market studies.
 
 use crate::effect::Effect;
 use novamind_insight::CurveExplorer;
@@ -20,16 +20,19 @@ impl GroupCurve {
     /// arrives.
     pub fn set_outdated(&mut self) {
         self.is_outdated = true;
+        self.pending.cancel();
     }
 
     /// Requests the curve of a group, unless it is present and current or already requested.
     pub fn request(&mut self, group: Group) -> Vec<Effect> {
-        let is_asked = self.pending.question().is_some_and(|question| question.0 == group);
-        let is_present = self.curve.as_ref().is_some_and(|(shown, _)| *shown == group);
-        if !self.is_outdated && (is_asked || is_present) {
+        if !self.is_outdated && self.of_group(group).is_some() {
+            // The answer for another group would replace the curve.
+            self.pending.cancel();
             return Vec::new();
         }
-        self.is_outdated = false;
+        if self.is_requested(group) {
+            return Vec::new();
+        }
         vec![Effect::Ask(self.pending.ask(EstimatedCurveQuestion(group)))]
     }
 
@@ -37,7 +40,13 @@ impl GroupCurve {
     pub fn take_answer(&mut self) {
         if let Some((EstimatedCurveQuestion(group), found)) = self.pending.try_take() {
             self.curve = Some((group, found));
+            self.is_outdated = false;
         }
+    }
+
+    /// Returns whether the curve of a group has been requested and has not arrived.
+    pub fn is_requested(&self, group: Group) -> bool {
+        self.pending.question().is_some_and(|question| question.0 == group)
     }
 
     /// Returns the curve of a group, or the reason why it is not available. Returns `None` until it arrives.

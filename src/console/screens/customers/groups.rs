@@ -40,11 +40,19 @@ impl Pane<Customers> for CustomerGroupsPane {
         if action == Action::Open {
             customers.open_group = customers.table.selected();
             customers.group_state = OpenGroupState::default();
-            return customers.request_curve(context.company);
         } else {
             customers.table.handle_action(action, context.page_rows);
         }
-        Vec::new()
+        customers.request_curve(context.company)
+    }
+
+    fn handle_click(&self, customers: &mut Customers, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let before = customers.table.selected();
+        customers.table.select_visible_row(row);
+        match before == customers.table.selected() {
+            true => self.handle_action(customers, Action::Open, context),
+            false => customers.request_curve(context.company),
+        }
     }
 
     fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {

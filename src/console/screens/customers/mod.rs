@@ -114,6 +114,11 @@ impl Customers {
             let rows = self.table.visible_rows().iter();
             rows.enumerate().find(|(_, row)| Some(**row) == wanted).map_or(0, |(at, _)| at as isize)
         };
+        // The user may have moved or hidden columns.
+        let column = |wanted: usize| {
+            self.table.displayed_columns().iter().position(|column| *column == wanted).unwrap_or(0) as isize
+        };
+        let (cancellations, cancellations_heading) = columns::cancellations_column(company);
         CustomersFacts {
             is_group_open: self.open_group.is_some(),
             panes_to_goal: match self.open_group {
@@ -123,8 +128,8 @@ impl Customers {
             panes_to_fit: steps(&GROUP_PANES, opened, CustomersPane::Fit),
             panes_to_list: to_list,
             rows_to_example: row(Some(0)) - row(self.table.selected()),
-            columns_to_cancellations: columns::cancellations_column(company) as isize
-                - self.table.selected_column() as isize,
+            columns_to_cancellations: column(cancellations) - column(self.table.selected_column()),
+            cancellations_heading,
         }
     }
 
@@ -133,10 +138,9 @@ impl Customers {
         company.observation.known_groups.get(self.open_group.or(self.table.selected())?).copied()
     }
 
-    /// Requests the curve of the open group if it is missing or outdated.
+    /// Requests the curve of the open or selected group if it is missing or outdated.
     fn request_curve(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
-        let group = self.open_group.and_then(|open| company.observation.known_groups.get(open).copied());
-        group.map_or_else(Vec::new, |group| self.curve.request(group))
+        self.group(company).map_or_else(Vec::new, |group| self.curve.request(group))
     }
 
     fn change_group(&mut self, other: impl Fn(usize) -> usize, company: &DisplayedCompany) {

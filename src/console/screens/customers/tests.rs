@@ -261,6 +261,42 @@ fn fit_shows_the_curve_and_both_conversions_of_the_open_group() {
 }
 
 #[test]
+fn list_requests_the_curve_of_the_selected_group() {
+    use novamind_insight::CurveExplorer;
+    use novamind_worker::page_questions::EstimatedCurveQuestion;
+
+    let (session, company, mut screen) = played_screen::<Customers>(4);
+    let keys = crate::keys::KeyBindings::bundled();
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let asked = |effects: &[Effect]| crate::test_kit::only_question::<EstimatedCurveQuestion>(effects).0.id();
+    assert!(!screen_text(&screen, &company, 120, 37).contains("shaded area"));
+    assert_eq!(asked(&screen.request_data(&context)), "S1");
+    screen.curve.set_answer(CurveExplorer::from_estimates(&session, group("S1")));
+    let text = screen_text(&screen, &company, 120, 37);
+    assert!(text.contains("estimated conversion "), "{text}");
+    screen.on_company_change(&context);
+    assert_eq!(asked(&screen.request_data(&context)), "S1");
+    screen.curve.set_answer(CurveExplorer::from_estimates(&session, group("S1")));
+    assert_eq!(asked(&handle_action(&mut screen, Action::Down, &company)), "S2");
+    // The answer for S2 must not replace the curve of the group to which the user returned.
+    assert!(handle_action(&mut screen, Action::Up, &company).is_empty());
+    assert!(!screen.curve.is_requested(group("S2")) && screen.curve.of_group(group("S1")).is_some());
+    assert_eq!(asked(&Screen::handle_click(&mut screen, 0, 2, &context)), "S3");
+}
+
+#[test]
+fn tour_leads_to_the_cancellations_column() {
+    let (_, company, mut screen) = played_screen::<Customers>(4);
+    let facts = screen.tour_facts(&company);
+    for _ in 0..facts.columns_to_cancellations {
+        handle_action(&mut screen, Action::Right, &company);
+    }
+    let column = screen.table.selected_column();
+    assert_eq!(screen.table.columns()[column].title, facts.cancellations_heading);
+    assert_eq!((facts.cancellations_heading, screen.tour_facts(&company).columns_to_cancellations), ("cancelled", 0));
+}
+
+#[test]
 fn narrow_study_shows_every_range() {
     let (_, company, mut screen) = played_screen::<Customers>(2);
     screen.show_group(group("S1"), &company);

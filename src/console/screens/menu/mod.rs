@@ -371,7 +371,7 @@ impl StartMenu {
     /// Handles a key that is typed into a field.
     pub fn handle_key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         match self.page {
-            MenuPage::NewRun => self.form.handle_key(key),
+            MenuPage::NewRun => return self.form.handle_key(key),
             MenuPage::PathForm => self.path.handle_key(key),
             MenuPage::Runs if self.table.is_filter_open() => self.table.edit_filter(|field| {
                 field.handle_key(key);

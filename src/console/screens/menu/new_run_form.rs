@@ -33,8 +33,8 @@ pub(super) struct NewRunForm {
 
 /// Label and description of each row of the form.
 pub(super) const FORM_ROWS: [(&str, &str); 7] = [
-    ("Mode", "Purpose of the run; left and right change the mode. Fixed once the run starts."),
-    ("Scenario", "Rules of the market; left and right change the scenario."),
+    ("Mode", "Purpose of the run; left, right and enter change the mode. Fixed once the run starts."),
+    ("Scenario", "Rules of the market; left, right and enter change the scenario."),
     ("Seed", "The same seed gives the same random events."),
     ("Days", "Length of the run, at least 7. Published results are those of day 500."),
     ("Starting cash", "Dollars on day 0."),
@@ -119,17 +119,26 @@ impl NewRunForm {
         }
     }
 
-    pub(super) fn handle_key(&mut self, key: &KeyEvent) {
+    pub(super) fn handle_key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         self.rejection = None;
         // A digit starts the edit, as in the forms of tools. Other keys have functions in the list.
         if !self.is_typing() {
             if !matches!(key.code, KeyCode::Char(letter) if letter.is_ascii_digit()) {
-                return;
+                return Vec::new();
             }
             self.start_edit();
         }
-        if let Some(field) = self.field() {
-            field.handle_key(key);
+        match self.field() {
+            Some(field) => {
+                field.handle_key(key);
+                Vec::new()
+            }
+            None => {
+                let row = FORM_ROWS[self.selected_row].0;
+                vec![Effect::ShowError(format!(
+                    "{row} is not a number; select Seed, Days or Starting cash first"
+                ))]
+            }
         }
     }
 

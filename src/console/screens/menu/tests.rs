@@ -255,6 +255,12 @@ fn form_shows_problems_while_typing() {
 fn form_shows_the_selected_scenario() {
     let mut menu = menu(Vec::new());
     menu.handle_action(Action::NewRun);
+    menu.form.selected_row = 1;
+    let digit = KeyEvent::new(KeyCode::Char('4'), KeyModifiers::NONE);
+    assert!(
+        matches!(&menu.handle_key(&digit)[..], [Effect::ShowError(text)] if text.starts_with("Scenario is not"))
+    );
+    assert!(menu_text(&menu, 80, 23).contains("left, right and enter change the scenario"));
     let configuration = Configuration::bundled();
     menu.form.selected_row = 1;
     for name in configuration.scenario_names() {

@@ -155,8 +155,9 @@ pub fn post_items(company: &DisplayedCompany) -> Vec<NewsItem> {
     let compared = match weeks {
         0 => String::new(),
         1 => format!(" ({usual} the week before)"),
-        4 => format!(" (four-week average {usual})"),
-        weeks => format!(" ({usual} on average in the {weeks} weeks before)"),
+        2 => format!(" (two-week average {usual})"),
+        3 => format!(" (three-week average {usual})"),
+        _ => format!(" (four-week average {usual})"),
     };
     let mut items = Vec::new();
     if number > 0 {

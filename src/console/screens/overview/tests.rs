@@ -224,7 +224,7 @@ fn first_week_cash_change_matches_the_header() {
 #[test]
 fn post_counts_are_compared_with_existing_weeks() {
     for (weeks, words) in
-        [(1, ""), (2, "the week before"), (3, "on average in the 2 weeks before"), (6, "four-week average")]
+        [(1, ""), (2, "the week before"), (3, "two-week average"), (6, "four-week average")]
     {
         let company = DisplayedCompany::from_session(&played_session(weeks));
         let by_people = |post: &&std::sync::Arc<novamind_worker::posts::Post>| {

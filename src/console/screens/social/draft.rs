@@ -29,11 +29,11 @@ impl Pane<Social> for DraftPane {
         Some(Figure { title: "your post".to_owned(), term: POST_TOOL.name(), sql: None, week_quantity: None })
     }
 
-    fn handle_action(&self, social: &mut Social, action: Action, _: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, social: &mut Social, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
             Action::Open => social.editing = true,
             Action::Close => social.focus = SocialPane::Feed,
-            _ => {}
+            _ => social.draft.scroll(action, context.page_rows.into()),
         }
         Vec::new()
     }
@@ -90,6 +90,9 @@ impl Pane<Social> for DraftPane {
             true => "This week's post is published. Write the next one next week.".to_owned(),
             false => format!("Write a post with {key}. One post per week; every known group reads it."),
         };
+        if placement.focused {
+            canvas.page_rows = placement.area.height.max(1);
+        }
         social.draft.draw(canvas, placement.area, social.editing, &hint);
     }
 

@@ -201,6 +201,8 @@ impl Social {
         if let Some(number) = self.reply_to {
             arguments["reply_to_post_id"] = number.into();
         }
+        // The confirmation follows. If the user cancels, the next keys must not be typed into the post.
+        self.editing = false;
         vec![Effect::Ask(self.pending_call.ask(PreviewCallQuestion { tool: POST_TOOL, arguments }))]
     }
 
@@ -260,10 +262,12 @@ impl ScreenState for Social {
     }
 
     fn unseen_count(&self) -> usize {
-        // After a run is opened, posts of the last week are unread unless they were seen in an earlier session.
-        let is_new = |post: &&Arc<Post>| match self.newest_seen_post {
-            Some(seen) => post.number > seen,
-            None => post.day + 7 > self.day && self.last_viewed_day.is_none_or(|day| post.day > day),
+        // Counts the posts since the user left the screen, in this or an earlier session. If the user has never viewed the
+        // screen, counts the posts of the last week.
+        let is_new = |post: &&Arc<Post>| match (self.newest_seen_post, self.last_viewed_day) {
+            (Some(seen), _) => post.number > seen,
+            (None, Some(day)) => post.day > day,
+            (None, None) => post.day + 7 > self.day,
         };
         self.others.iter().filter(is_new).count()
     }

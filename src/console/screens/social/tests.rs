@@ -181,6 +181,7 @@ fn rejected_post_keeps_the_draft() {
     handle_action(&mut screen, Action::Compose, &company);
     type_draft(&mut screen, &company, "Again");
     handle_action(&mut screen, Action::SendPost, &company);
+    assert!(screen.edited_text().is_none(), "keys after a cancelled question are not typed into the post");
     let refused = || Err(Rejection::new("already_posted", "you have already posted"));
     screen.pending_call.set_answer(refused());
     let effects = with_context(&company, |context| screen.take_answers(context));
@@ -201,6 +202,10 @@ fn viewed_posts_are_not_new() {
     assert_eq!((screen.unseen_count(), week > 0), (week, true));
     screen.mark_seen();
     assert_eq!(screen.unseen_count(), 0);
+    // A later session counts all posts since the screen was viewed, not only those of the last week.
+    (screen.newest_seen_post, screen.last_viewed_day) = (None, Some(0));
+    assert_eq!(screen.unseen_count(), screen.others.len());
+    assert!(screen.others.len() > week);
 }
 
 #[test]

@@ -165,7 +165,7 @@ fn fit_lines(
     add_rows(
         "",
         &format!(
-            "Needs are the group's means (±{}). Customers differ, and require more quality at a higher price: the curve is \
+            "Needs are the ranges of the group's true means: each estimate is within {} of its true value. Customers differ, and require more quality at a higher price: the curve is \
              the quality that half of the leads accept at a price, the shaded area is 10 to 90 %.",
             percent(fit.max_relative_error, 0)
         ),

@@ -234,7 +234,7 @@ fn money_lines(company: &DisplayedCompany, market: &CustomerData, facts: &GroupF
         ("30-day churn", or_none(facts.churn(), |share| percent(share, 1)), "churn", rows(&churn)),
         ("ad budget per day", dollars(total_ad_budget(company, group)), "set_targeted_ad_spend", None),
         ("ad spend, 28 days", dollars(market.ad_spend(group)), "ad_channel_leads.spend", Some(spend)),
-        ("development per day", dollars(development_budget(company, group)), "set_targeted_dev_spend", None),
+        ("targeted development per day", dollars(development_budget(company, group)), "set_targeted_dev_spend", None),
     ] {
         lines.push(figure_line(format!("  {name}"), value, format!("{group}: {name}"), term, sql));
         // The churn line has the same query as the churn column.

@@ -103,7 +103,9 @@ fn review_lines(
         }
     }
     if company.action_items.is_empty() && unsent.is_empty() {
-        lines.push(TextLine::from(canvas.span("  nothing needs attention", Role::Dim)));
+        let text = describe_no_items(company.weeks.last(), seen.runway_weeks);
+        let rows = wrap(&text, width.saturating_sub(2)).into_iter();
+        lines.extend(rows.map(|text| TextLine::from(canvas.span(format!("  {text}"), Role::Dim))));
     }
     lines
 }

@@ -4,6 +4,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
 
 use crate::action::Action;
+use novamind_report::action_items::describe_no_items;
 use novamind_report::cost_review::{identical_plan_lines, income_and_cost_lines};
 use novamind_report::decision_periods::by_amount;
 use novamind_report::research::late_project_lines;

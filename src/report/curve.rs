@@ -12,12 +12,12 @@ const POINTS_PER_ROW: usize = 6;
 
 const UNREACHABLE: &str = "–";
 
-/// Describes the source of the curve: `estimates of day 0, ±65%`.
+/// Describes the source of the curve: `estimates of day 0 · each within 65% of its true value`.
 pub fn describe_basis(basis: &CurveBasis) -> String {
     match basis {
         CurveBasis::Truth { day } => format!("true values of day {day}"),
         CurveBasis::Estimates { noise, as_of, .. } => {
-            format!("estimates of day {as_of}, ±{}", percent(*noise, 0))
+            format!("estimates of day {as_of} · each within {} of its true value", percent(*noise, 0))
         }
     }
 }
@@ -143,7 +143,10 @@ mod tests {
         let mut session = play_weeks(0);
         let curve_explorer =
             CurveExplorer::open(&mut session, Group::parse("S1").expect("a group")).expect("an explorer");
-        assert_eq!(describe_basis(&curve_explorer.basis), "estimates of day 0, ±65%");
+        assert_eq!(
+            describe_basis(&curve_explorer.basis),
+            "estimates of day 0 · each within 65% of its true value"
+        );
         assert_eq!(column_names(&curve_explorer).len(), 6);
         assert_eq!(rows(&curve_explorer).len(), 11);
         assert!(rows(&curve_explorer)[0][0] == "$0" && rows(&curve_explorer)[10][3] == "–");

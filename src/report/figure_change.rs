@@ -29,7 +29,8 @@ impl FigureChange {
         (self.new - self.old).abs() / self.old.abs().max(self.new.abs())
     }
 
-    /// Describes the change if it is the largest one in several weeks. Returns an empty text otherwise.
+    /// Describes the change if it is the largest one in several weeks, in the unit of the figure and not in percent.
+    /// Returns an empty text otherwise.
     pub fn describe_rarity(&self) -> String {
         let what = if self.new > self.old { "rise" } else { "fall" };
         match self.weeks_since_larger {
@@ -38,8 +39,10 @@ impl FigureChange {
             {
                 String::new()
             }
-            None => format!("largest {what} yet"),
-            Some(weeks) if weeks >= MIN_EARLIER_CHANGES => format!("largest {what} in {weeks} weeks"),
+            None => format!("largest absolute {what} yet"),
+            Some(weeks) if weeks >= MIN_EARLIER_CHANGES => {
+                format!("largest absolute {what} in {weeks} weeks")
+            }
             Some(_) => String::new(),
         }
     }
@@ -102,11 +105,11 @@ mod tests {
         assert_eq!(ordinary.describe_rarity(), "");
         let fall = last_change(&[&steady[..], &[120.0]].concat(), 0.0).expect("it moved");
         assert!(fall.unusualness > 10.0, "{fall:?}");
-        assert_eq!(fall.describe_rarity(), "largest fall yet");
+        assert_eq!(fall.describe_rarity(), "largest absolute fall yet");
         let jump = last_change(&[0.0, 50.0, 60.0, 65.0, 70.0, 72.0, 110.0], 0.0).expect("it moved");
         assert_eq!(
             (jump.weeks_since_larger, jump.describe_rarity().as_str()),
-            (Some(5), "largest rise in 5 weeks")
+            (Some(5), "largest absolute rise in 5 weeks")
         );
     }
 
@@ -145,6 +148,6 @@ mod tests {
         assert!(first_weeks.unusualness <= 1.0, "{first_weeks:?}");
         let many = last_change(&[&series[..], &[40.0]].concat(), 40f64.sqrt()).expect("it moved");
         assert!(many.unusualness > 3.0);
-        assert_eq!(many.describe_rarity(), "largest rise yet");
+        assert_eq!(many.describe_rarity(), "largest absolute rise yet");
     }
 }

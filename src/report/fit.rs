@@ -332,7 +332,7 @@ impl Fit {
         let error = percent(self.max_relative_error, 0);
         let mut lines = vec![
             format!(
-                "{}: study level {} (±{error}), required quality and budget as of {}",
+                "{}: study level {} (each estimate is within {error} of its true value), required quality and budget as of {}",
                 self.group,
                 self.level,
                 self.describe_study_day()

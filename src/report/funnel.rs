@@ -96,11 +96,11 @@ impl Funnel {
         if let Some((plan, delivered)) = self.best_quality.filter(|_| self.recently_lost > 0) {
             let (floor, day) = (self.floor.format_quality(), self.study_day);
             text += &format!(
-                "; {plan} delivers {delivered:.4}, their mean required quality is {floor} (as of day {day})"
+                "; {plan} delivers {delivered:.4} now, and their mean required quality was {floor} on day {day}"
             );
             if self.usage.position_of(self.quota) != RangePosition::Above {
                 text += &format!(
-                    "; its quota is {}, the smallest enterprises need {} units a day",
+                    "; its quota is {} units a day, and the estimated usage of an enterprise with the fewest seats is {}",
                     format_whole(self.quota),
                     self.usage.format_units()
                 );
@@ -178,7 +178,8 @@ mod tests {
         assert!(away.describe().contains("found no plan good enough"), "{}", away.describe());
         let lately = all.iter().find(|funnel| funnel.recently_lost > 0).expect("some, lately");
         assert!(
-            lately.describe().contains(" delivers ") && lately.describe().contains("required quality is ")
+            lately.describe().contains(" delivers ")
+                && lately.describe().contains(" now, and their mean required quality was ")
         );
     }
 }

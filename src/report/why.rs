@@ -116,6 +116,11 @@ fn describe_detail(detail: &CauseDetail) -> String {
             percent(*before, 0),
             percent(*now, 0)
         ),
+        CauseDetail::HiddenInputs => {
+            "competitors, economy, demand, calendar and other inputs that you do not control; shown \
+             one by one when the run has ended"
+                .to_owned()
+        }
         CauseDetail::Occurrences(times, noun) => pluralize(*times as u32, noun),
         CauseDetail::Input(InputDetail { name, old, new, is_share }) => {
             let value = |value: f64| if *is_share { percent(value, 1) } else { format_number(value) };

@@ -55,7 +55,7 @@ fn dragging_a_point_opens_the_form_without_a_change() {
     let mut console = console_in_run(runs.path(), Mode::Sandbox);
     console.press("; v");
     console.assert_shows("Participation curve of S1");
-    console.assert_shows("estimates of day 0, ±65%");
+    console.assert_shows("estimates of day 0 · each within 65% of its true value");
     console.press("right right down");
     console.assert_shows("A $14");
     console.press("enter");

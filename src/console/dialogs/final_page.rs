@@ -357,8 +357,7 @@ fn measure_lines<'a>(
         }
         None => percent(share, 0),
     });
-    let planning = format!("{:.1} planning words", measures.planning.planning_each);
-    let words = measures.planning.words_each;
+    let (planning, words) = (measures.planning.planning_each, measures.planning.words_each);
     let named: [(&str, String); 5] = [
         ("forecasts", calibration_text(&measures.forecasts, long)),
         (
@@ -371,8 +370,8 @@ fn measure_lines<'a>(
             "planning",
             first_fitting(
                 [
-                    format!("{planning} per rationale of {words:.0} words"),
-                    format!("{planning} per {words:.0} words"),
+                    format!("{planning:.1} of {words:.0} words in a mean rationale are planning words"),
+                    format!("{planning:.1} of {words:.0} are planning words"),
                 ],
                 long,
             ),

@@ -15,7 +15,7 @@ use crate::screens::overview::action_items::item_screen;
 use crate::screens::overview::figures::{self, METRICS};
 use novamind_base::formatting::{dollars, grouped_number, pluralize, short_dollars, signed_dollars};
 use novamind_record::figures::WeekFigure;
-use novamind_report::action_items::ActionItem;
+use novamind_report::action_items::{ActionItem, describe_no_items};
 use novamind_report::week::ChangedFigure;
 use novamind_report::{WeekReport, figure_label};
 use novamind_session::identifiers::Group;
@@ -610,8 +610,11 @@ fn next_steps_section<'a>(
     }
     if needs.is_empty() {
         let key = context.keys.label(Action::NextWeek).unwrap_or_default();
-        let text = format!("  nothing needs attention; {key} starts the next week");
-        return vec![Line::from(canvas.span(text, Role::Dim))];
+        let company = context.company;
+        let checked = describe_no_items(company.weeks.last(), company.observation.runway_weeks);
+        let text = format!("{checked} {key} starts the next week.");
+        let lines = wrap(&text, (width as usize).saturating_sub(2)).into_iter();
+        return lines.map(|text| Line::from(canvas.span(format!("  {text}"), Role::Dim))).collect();
     }
     let lines = |need: &ActionItem| {
         let key =

@@ -127,7 +127,8 @@ impl WeekResimulation {
         }
         let (service, hidden): (Vec<CauseGroup>, Vec<CauseGroup>) =
             all.into_iter().partition(|group| group.cause == Cause::Service);
-        let market = CauseGroup { cause: Cause::Market, members: all_members(&hidden), details: Vec::new() };
+        let details = vec![CauseDetail::HiddenInputs];
+        let market = CauseGroup { cause: Cause::Market, members: all_members(&hidden), details };
         (!hidden.is_empty()).then_some(market).into_iter().chain(service).collect()
     }
 

@@ -82,11 +82,11 @@ impl Cause {
 
 fn continued_name(setting: SuspendedSetting) -> &'static str {
     match setting {
-        SuspendedSetting::Development => "continuing development",
-        SuspendedSetting::Advertising => "continuing advertising",
-        SuspendedSetting::Operations => "continuing operations",
-        SuspendedSetting::Discounts => "continuing discounts",
-        SuspendedSetting::InAppAds => "continuing in-app ads",
+        SuspendedSetting::Development => "development as before",
+        SuspendedSetting::Advertising => "advertising as before",
+        SuspendedSetting::Operations => "operations as before",
+        SuspendedSetting::Discounts => "discounts as before",
+        SuspendedSetting::InAppAds => "in-app ads as before",
     }
 }
 
@@ -151,6 +151,8 @@ pub enum CauseDetail {
         /// Monthly prices of these subscribers in the previous week and in the explained week, dollars.
         dollars: [f64; 2],
     },
+    /// World inputs that unfinished runs do not show one by one.
+    HiddenInputs,
     /// Number of occurrences and the noun for one occurrence, for example 3 and `call`.
     Occurrences(usize, &'static str),
 }

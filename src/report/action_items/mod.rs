@@ -18,6 +18,7 @@ mod tests;
 
 use serde_json::Value;
 
+use crate::formatting::{format_money, pluralize};
 use novamind_record::figures::WeekFigures;
 use novamind_session::identifiers::{ByGroup, Channel, Group};
 use novamind_session::{
@@ -240,6 +241,22 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
         order.then(right.at_risk.total_cmp(&left.at_risk)).then(left.problem.cmp(&right.problem))
     });
     found
+}
+
+/// Describes the result if there are no action items. States the loss of the last week, because no rule reports a loss
+/// that cash covers for a long time.
+pub fn describe_no_items(last_week: Option<&WeekFigures>, runway_weeks: Option<f64>) -> String {
+    let none = "No rule found a problem.";
+    let Some(week) = last_week.filter(|week| week.cash_change < 0.0) else { return none.to_owned() };
+    let lasts = runway_weeks.map_or(String::new(), |weeks| {
+        format!(" Cash is expected to last {}.", pluralize(weeks as u32, "week"))
+    });
+    format!(
+        "{none} Cash fell by {} last week: payments {}, running costs {}.{lasts}",
+        format_money(-week.cash_change),
+        format_money(week.payments),
+        format_money(week.costs)
+    )
 }
 
 impl ActionItem {

@@ -216,14 +216,14 @@ fn check_no_sales(need: &ActionItem, stated: &[f64], proposed: &[f64], group: Gr
     assert_near(share, 100.0 * f64::from(week.signed) / f64::from(week.leads), 0.05, need);
     let proposal = need.proposal.as_deref().unwrap_or_default();
     if proposal.contains("in total") {
-        let [spend, _, days, total] = proposed[..4] else { panic!("{need:#?}") };
+        let [spend, _, _, _, days, total] = proposed[..6] else { panic!("{need:#?}") };
         assert_eq!(total, spend * days, "{need:#?}");
     } else if proposal.contains("A week costs") {
-        let [spend, _, days, week] = proposed[..4] else { panic!("{need:#?}") };
+        let [spend, _, _, _, days, week] = proposed[..6] else { panic!("{need:#?}") };
         assert!(days < 7.0 && week == 7.0 * spend, "{need:#?}");
     }
     if let Some((_, rest)) = proposal.split_once("The cost exceeds the ") {
-        let cost = proposed[3];
+        let cost = proposed[5];
         assert!(cost > numbers(rest)[0], "{need:#?}");
     }
 }

@@ -1,5 +1,7 @@
 //! Diagnoses of sales: plans on offer, leads, and their conversion.
 
+use std::cmp::Reverse;
+
 use serde_json::{Map, Value, json};
 
 use super::{
@@ -267,6 +269,20 @@ impl<'a> GroupOffers<'a> {
         })
     }
 
+    /// Returns the plan on sale that most of the group's new customers of the last week took, and how many took it.
+    fn most_chosen_plan(&self) -> Option<(Plan, String)> {
+        let week = &self.situation.last_group_week()?[self.estimates.group];
+        // If two plans were taken equally often, the first plan is named.
+        let plan = self.plans().max_by_key(|plan| (week.chosen[*plan], Reverse(plan.index())))?;
+        let reason = match (week.chosen[plan], week.signed) {
+            (0, _) => return None,
+            (1, 1) => "which the new customer took".to_owned(),
+            (chosen, signed) if chosen == signed => format!("which all {signed} new customers took"),
+            (chosen, signed) => format!("which {chosen} of the {signed} new customers took"),
+        };
+        Some((plan, reason))
+    }
+
     /// Describes the quality of the best plan. Also names the plan with higher quality whose quota does not cover the
     /// usage, if there is such a plan.
     fn describe_best_plan(&self, plan: Plan, delivered: f64) -> String {
@@ -416,10 +432,13 @@ impl<'a> GroupOffers<'a> {
             // The leads of the last week did not see an offer that changed today, so their decisions do not judge it.
             OfferDeficit::Balance if self.was_changed_today() => None,
             OfferDeficit::Balance => {
-                let plan = self.best_plan()?;
+                let (plan, reason) = match self.most_chosen_plan() {
+                    Some((plan, reason)) => (plan, reason),
+                    None => (self.best_plan()?, "the plan that fits the estimates best".to_owned()),
+                };
                 let delivered = self.quality.by_plan[plan];
                 let problem = format!(
-                    "{plan} delivers quality {} for {}. Customers require more at higher prices (mean at low prices: {floor}, {as_of}).",
+                    "{plan}, {reason}, delivers quality {} for {}. Customers require more at higher prices (mean at low prices: {floor}, {as_of}).",
                     format_quality(delivered),
                     format_money(self.price(plan))
                 );
@@ -493,22 +512,49 @@ fn propose_better_quality(
         true => format!("{duration}. A week costs {}.", format_money(cost)),
         false => format!("{duration}, for {} in total.", format_money(cost)),
     };
+    let range = TrueValueRange::from_estimate(floor, situation.group_estimates(group)?.max_relative_error);
     let reached = format!(
-        "Development for {group} at {} a day reaches the estimate of the required quality, {}, in {price}",
+        "Development for {group} at {} a day would reach {}, the estimate of the mean required quality (true value {}), in {price}",
         format_money(PROPOSED_DEVELOPMENT_SPEND),
-        format_quality(floor)
+        format_quality(floor),
+        range.format_quality()
     );
+    // Development is proposed only if it costs less than a year of payments by the leads that it can win.
+    let revenue = yearly_revenue_of_lost_leads(situation, group)?;
+    if cost > revenue {
+        let text = format!(
+            "{reached} This is more than the {} that the leads of the last four weeks who did not {} would pay in a year, by estimate.",
+            format_money(revenue),
+            if group.is_enterprise() { "request an offer" } else { "sign up" }
+        );
+        return Some((text, ActionTarget::Group(group)));
+    }
     let text = match cost > at_risk {
-        true => {
-            format!(
-                "{reached} The cost exceeds the {} a month that four weeks of such leads would pay at the lowest price, but the effect lasts.",
-                format_money(at_risk)
-            )
-        }
+        true => format!(
+            "{reached} The cost exceeds the {} at risk in four weeks, but the effect lasts.",
+            format_money(at_risk)
+        ),
         false => reached,
     };
     spend.insert(group, PROPOSED_DEVELOPMENT_SPEND);
     let spend: Map<String, Value> =
         spend.iter().map(|(group, dollars)| (group.id().to_owned(), json_number(*dollars))).collect();
     Some((text, ActionTarget::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": spend }))))
+}
+
+/// Returns the estimated payments in a year, dollars, of those leads of the last four weeks who did not sign up or, if
+/// the group is an enterprise group, requested no offer. Individuals pay at most the lowest price; enterprises pay the
+/// mean budget for the smallest number of seats.
+fn yearly_revenue_of_lost_leads(situation: &DiagnosisContext<'_>, group: Group) -> Option<f64> {
+    let estimates = situation.group_estimates(group)?;
+    let recent = &situation.groups[situation.groups.len().saturating_sub(4)..];
+    let lost = recent
+        .iter()
+        .map(|week| &week[group])
+        .map(|week| week.leads.saturating_sub(if group.is_enterprise() { week.asked } else { week.signed }));
+    let price = match group.is_enterprise() {
+        true => estimates.budget * estimates.seats.0,
+        false => GroupOffers::new(situation, estimates)?.lowest_price().min(estimates.budget),
+    };
+    Some(f64::from(lost.sum::<u32>()) * price * 12.0)
 }

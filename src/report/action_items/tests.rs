@@ -646,3 +646,19 @@ fn outdated_estimate_proposes_a_study_if_worthwhile() {
     assert_eq!(place(9_000, 5), study);
     assert_ne!(place(200, 5), study, "the study costs more than is at risk");
 }
+
+#[test]
+fn empty_list_states_the_loss_of_the_week() {
+    use super::describe_no_items;
+    use novamind_record::figures::WeekFigures;
+    let week =
+        WeekFigures { cash_change: -19_001.0, payments: 198.0, costs: 19_199.0, ..WeekFigures::default() };
+    assert_eq!(
+        describe_no_items(Some(&week), Some(44.6)),
+        "No rule found a problem. Cash fell by $19,001 last week: payments $198, running costs $19,199. Cash is \
+         expected to last 44 weeks."
+    );
+    let gain = WeekFigures { cash_change: 5.0, ..week };
+    assert_eq!(describe_no_items(Some(&gain), None), "No rule found a problem.");
+    assert_eq!(describe_no_items(None, None), "No rule found a problem.");
+}

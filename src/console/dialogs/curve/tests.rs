@@ -73,7 +73,7 @@ fn page_is_drawn_at_every_size() {
         for (width, height) in [(0, 0), (2, 2), (20, 5), (60, 13), (60, 16), (80, 24), (120, 40), (200, 60)] {
             let picture = dialog_text(&page, &company, width, height);
             if width >= 60 {
-                for words in ["urve of", "estimates of day 0, ±65%", "half", "left right price"] {
+                for words in ["urve of", "estimates of day 0", "half", "left right price"] {
                     assert!(picture.contains(words), "{words} in {picture}");
                 }
             }

@@ -4,6 +4,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
 
 use crate::action::Action;
+use novamind_report::action_items::describe_no_items;
 use novamind_report::cost_review::{identical_plan_lines, income_and_cost_lines};
 use novamind_report::decision_periods::by_amount;
 use novamind_report::research::late_project_lines;
@@ -103,7 +104,9 @@ fn review_lines(
         }
     }
     if company.action_items.is_empty() && unsent.is_empty() {
-        lines.push(TextLine::from(canvas.span("  nothing needs attention", Role::Dim)));
+        let text = describe_no_items(company.weeks.last(), seen.runway_weeks);
+        let rows = wrap(&text, width.saturating_sub(2)).into_iter();
+        lines.extend(rows.map(|text| TextLine::from(canvas.span(format!("  {text}"), Role::Dim))));
     }
     lines
 }

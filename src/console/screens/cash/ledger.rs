@@ -115,19 +115,19 @@ pub fn ledger_table(ledger: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<
 fn ledger_row(subject: &LedgerSubject, all: &[CategoryAmounts; 4], week: u32) -> Vec<TableCell> {
     let [now, before, mean, total] = [0, 1, 2, 3].map(|at| subject.amount(&all[at]));
     let name = subject.name();
-    let (income, role) = match subject {
+    let (is_income, role) = match subject {
         LedgerSubject::Category(at) => (CATEGORIES[*at].is_income, Role::Text),
         LedgerSubject::Costs => (false, Role::Strong),
         LedgerSubject::Income | LedgerSubject::Net => (true, Role::Strong),
     };
-    // For a cost, a positive change means that the cost increased.
-    let change = if income { now - before } else { before - now };
+    // Costs are shown as negative amounts, so a higher cost is a fall of the shown amount, in every row.
+    let change = now - before;
     let change_role = match change {
         0.0 => Role::Dim,
-        change if (change > 0.0) == income => Role::Good,
+        change if change > 0.0 => Role::Good,
         _ => Role::Bad,
     };
-    let whole = income_or_cost_total(&all[0], income).abs();
+    let whole = income_or_cost_total(&all[0], is_income).abs();
     let share = if *subject == LedgerSubject::Net || whole <= 0.0 { None } else { Some(now.abs() / whole) };
     let amount = |value: f64| TableCell::from_number(value, if value == 0.0 { "–".to_owned() } else { format_money(value) });
     let moved = if week < 2 { "–".to_owned() } else { format_change(change, &short_dollars(change.abs().round())) };

@@ -218,12 +218,13 @@ fn week_quantity(what: GroupColumn, group: Group) -> Option<WeekQuantity> {
     WeekQuantity::for_group(figure, group)
 }
 
-/// Returns a query for the customers of a group, with their subscriptions, that meet a condition.
+/// Returns a query for the customers of a group, with their subscriptions, that meet a condition. Enterprises that
+/// requested no offer have no subscription.
 fn customers_statement(group: Group, condition: &str) -> String {
     format!(
         "SELECT c.customer_id, c.acquisition_source, c.created_day, s.plan, s.status, s.seat_count, s.effective_price,\n    \
          s.effective_price * s.seat_count AS amount, s.start_day, s.end_day\nFROM customers c\n\
-         JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}' AND {condition}"
+         LEFT JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}' AND {condition}"
     )
 }
 

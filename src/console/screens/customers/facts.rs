@@ -190,7 +190,7 @@ fn source_lines(company: &DisplayedCompany, facts: &GroupFacts, group: Group) ->
         let figures = format!("{:>6}{share:>7}{conversion:>7}", compact_number(*value));
         let sql = format!(
             "SELECT c.customer_id, c.created_day, s.plan, s.status, s.start_day, s.end_day\nFROM customers c\n\
-             JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\n    \
+             LEFT JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\n    \
              AND c.acquisition_source = '{source}' AND c.created_day > {}",
             i64::from(company.observation.day) - 84
         );
@@ -234,7 +234,7 @@ fn money_lines(company: &DisplayedCompany, market: &CustomerData, facts: &GroupF
         ("30-day churn", or_none(facts.churn(), |share| percent(share, 1)), "churn", rows(&churn)),
         ("ad budget per day", dollars(total_ad_budget(company, group)), "set_targeted_ad_spend", None),
         ("ad spend, 28 days", dollars(market.ad_spend(group)), "ad_channel_leads.spend", Some(spend)),
-        ("development per day", dollars(development_budget(company, group)), "set_targeted_dev_spend", None),
+        ("targeted development", format!("{} a day", dollars(development_budget(company, group))), "set_targeted_dev_spend", None),
     ] {
         lines.push(figure_line(format!("  {name}"), value, format!("{group}: {name}"), term, sql));
         // The churn line has the same query as the churn column.

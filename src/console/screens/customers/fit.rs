@@ -178,7 +178,8 @@ fn fit_lines(fit: &Fit, state: &CurveState<'_>, width: usize, tier: &dyn Fn(Plan
     add_rows(
         "",
         &format!(
-            "Needs are the group's means (±{}). Customers differ, and require more quality at a higher price{legend}",
+            "Needs are the ranges of the group's true means: each estimate is within {} of its true value. Customers \
+             differ, and require more quality at a higher price{legend}",
             percent(fit.max_relative_error, 0)
         ),
         Role::Dim,

@@ -38,7 +38,7 @@ impl Pane<Customers> for StudyPane {
             let level = study_level(context.company, group);
             let noise = context.company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
             let note = format!(
-                "study level {level} · ±{} · {}",
+                "study level {level} · noise ±{} · {}",
                 percent(noise, 0),
                 report::study_date_text(context.company, group)
             );

@@ -172,7 +172,7 @@ fn study_offer_text(company: &DisplayedCompany, group: Group, chosen: Option<u8>
         true => format!("update at level {target}"),
         false => format!("study to level {target}"),
     };
-    format!("{what}: {}, {}, then ±{}", dollars(terms.cost), pluralize(terms.days, "day"), percent(terms.noise, 0))
+    format!("{what}: {}, {}, then noise ±{}", dollars(terms.cost), pluralize(terms.days, "day"), percent(terms.noise, 0))
 }
 
 /// Pane with the insight report of the selected group.
@@ -217,7 +217,7 @@ impl Pane<Market> for ReportPane {
         let noise = company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
         PaneBorder {
             title: format!("{group} · {}", group_name(company, group)),
-            note: format!("level {level} · ±{} · {}", percent(noise, 0), study_date_text(company, group)),
+            note: format!("level {level} · noise ±{} · {}", percent(noise, 0), study_date_text(company, group)),
             keys: context.hints(&[Action::StudyGroup, Action::LevelUp, Action::LevelDown]),
             shows_keys_always: true,
         }

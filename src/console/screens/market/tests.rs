@@ -41,7 +41,7 @@ fn study_is_confirmed_ordered_and_shown_while_running() {
     let (mut session, company, mut screen) = played_screen::<Market>(1);
     handle_action(&mut screen, Action::LevelUp, &company);
     let text = screen_text(&screen, &company, 120, 37);
-    assert!(text.contains("to level 3: $175,000, 5 days, then ±25%"), "{text}");
+    assert!(text.contains("to level 3: $175,000, 5 days, then noise ±25%"), "{text}");
     handle_action(&mut screen, Action::LevelDown, &company);
     handle_action(&mut screen, Action::LevelDown, &company);
     let (question, effects) = confirm_and_call(&mut screen, &mut session, Action::StudyGroup);
@@ -56,7 +56,7 @@ fn study_is_confirmed_ordered_and_shown_while_running() {
     let company = DisplayedCompany::from_session(&session);
     let screen: Market = loaded_screen(&mut session, &company);
     let text = screen_text(&screen, &company, 200, 57);
-    assert!(text.contains("level 2 · ±40%") && text.contains("day 10"), "{text}");
+    assert!(text.contains("level 2 · noise ±40%") && text.contains("day 10"), "{text}");
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn small_window_shows_groups_and_report() {
     let (_, company, mut screen) = played_screen::<Market>(2);
     let text = screen_text(&screen, &company, 80, 21);
     for words in
-        ["6 known · 20 to find", "next study", "→2 $60.0k 3d ±40%", "level 1 · ±65%", "budget", "r study"]
+        ["6 known · 20 to find", "next study", "→2 $60.0k 3d ±40%", "level 1 · noise ±65%", "budget", "r study"]
     {
         assert!(text.contains(words), "{words} in\n{text}");
     }

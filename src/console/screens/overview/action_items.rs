@@ -11,9 +11,10 @@ use crate::screens::customers::costs;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::WeekFigure;
-use novamind_report::action_items::{ActionItem, ActionTarget, Problem};
+use novamind_report::action_items::{ActionItem, ActionTarget, Problem, describe_no_items};
 use novamind_session::ledger_weeks_condition_sql;
-use novamind_tui::canvas::Canvas;
+use novamind_tui::canvas::{Canvas, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_worker::company::DisplayedCompany;
 
@@ -53,19 +54,25 @@ impl Pane<Overview> for ActionItemsPane {
 
     fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         if context.company.action_items.is_empty() {
-            let text = match context.company.observation.ended {
-                Some(_) => "The run is over. You can still read and query it.",
-                // Items whose tool is locked are hidden, so an empty list does not mean that nothing needs
-                // action.
-                None if context.company.running_lesson().is_some_and(|lesson_status| lesson_status.tools.is_some()) => {
-                    "No action items. The task of the lesson states the next step."
-                }
-                None => "Nothing needs action. Start the next week with n.",
-            };
-            canvas.draw_text(placement.area, text, Role::Dim);
+            let lines = wrap(&empty_text(context.company), placement.area.width.into());
+            for (row, line) in row_rects(placement.area).zip(lines) {
+                canvas.draw_text(row, &line, Role::Dim);
+            }
         }
         linked_rows::draw(canvas, placement, &item_rows(context.company), overview.selected_need);
     }
+}
+
+fn empty_text(company: &DisplayedCompany) -> String {
+    if company.observation.ended.is_some() {
+        return "The run is over. You can still read and query it.".to_owned();
+    }
+    // Items whose tool is locked are hidden, so an empty list does not mean that nothing needs action.
+    if company.running_lesson().is_some_and(|lesson_status| lesson_status.tools.is_some()) {
+        return "No action items. The task of the lesson states the next step.".to_owned();
+    }
+    let checked = describe_no_items(company.weeks.last(), company.observation.runway_weeks);
+    format!("{checked} Start the next week with n.")
 }
 
 fn item_rows(company: &DisplayedCompany) -> Vec<LinkedRow> {
@@ -75,7 +82,10 @@ fn item_rows(company: &DisplayedCompany) -> Vec<LinkedRow> {
 /// Returns the height of the pane with its border, limited to `most`.
 pub fn pane_height(company: &DisplayedCompany, width: u16, most: u16) -> u16 {
     let room = width.saturating_sub(2);
-    let lines: usize = item_rows(company).iter().map(|row| row.lines(room).len()).sum();
+    let lines: usize = match company.action_items.is_empty() {
+        true => wrap(&empty_text(company), room.into()).len(),
+        false => item_rows(company).iter().map(|row| row.lines(room).len()).sum(),
+    };
     (lines.max(1) as u16 + 2).min(most.max(4))
 }
 

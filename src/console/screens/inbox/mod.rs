@@ -368,7 +368,10 @@ impl Inbox {
             return vec![Effect::ShowError("This line has no plan. Choose a plan first.".to_owned())];
         }
         if !term.cycle_basis(&threads, list_prices(company)) {
-            let text = "There is no list price and no asked price to compare with. Type a price in dollars.";
+            let text = match term.plan {
+                PlanChoice::NamedByCustomer => "None of these enterprises named a plan. Choose plan A, B or C first.",
+                _ => "The plan has no list price, and no enterprise asked a price. Set a list price first.",
+            };
             return vec![Effect::ShowError(text.to_owned())];
         }
         self.set_offer(offer);

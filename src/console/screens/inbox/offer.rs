@@ -1,7 +1,7 @@
 //! Offers as the user edits them: plans with prices, absolute or relative to the list price or the asked price.
 
 use super::model::Thread;
-use novamind_base::formatting::grouped_number;
+use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_session::identifiers::Plan;
 
 /// Maximum number of terms in one offer.
@@ -80,6 +80,25 @@ impl OfferTerm {
         grouped_number(self.value, decimals)
     }
 
+    /// Returns the value with its unit, for a table cell.
+    pub fn value_with_unit(&self) -> String {
+        match self.basis {
+            PriceBasis::Dollars => format!("${}", self.value_text()),
+            PriceBasis::ListPrice | PriceBasis::AskedPrice => format!("{}%", self.value_text()),
+        }
+    }
+
+    /// Describes what the value means, with the price for a thread if it is known: `% of list = $81.60`.
+    pub fn describe_value(&self, thread: Option<&Thread>, lists: [f64; 3]) -> String {
+        let meaning = match self.basis {
+            PriceBasis::Dollars => return "$ per seat".to_owned(),
+            PriceBasis::ListPrice => "% of list",
+            PriceBasis::AskedPrice => "% of ask",
+        };
+        let price = thread.and_then(|thread| self.price(thread, lists));
+        price.map_or(meaning.to_owned(), |(_, price)| format!("{meaning} = {}", dollars_and_cents(price)))
+    }
+
     pub fn cycle_plan(&mut self) {
         self.plan = match self.plan {
             PlanChoice::Unused => PlanChoice::Fixed(Plan::A),
@@ -91,7 +110,8 @@ impl OfferTerm {
     }
 
     /// Selects the next price basis that has a reference price for one of the threads, and converts the value, so that
-    /// the price for this thread stays the same. Returns whether the basis changed.
+    /// the price for this thread stays the same. If the term has no price for any thread, the value becomes 100 % of the
+    /// next reference price. Returns whether the basis changed.
     pub fn cycle_basis(&mut self, threads: &[&Thread], lists: [f64; 3]) -> bool {
         let bases = match self.basis {
             PriceBasis::ListPrice => [PriceBasis::AskedPrice, PriceBasis::Dollars],
@@ -105,7 +125,15 @@ impl OfferTerm {
             };
             Some((basis, threads.iter().find_map(value)?))
         };
-        let Some((basis, value)) = bases.into_iter().find_map(converted) else { return false };
+        let unconverted = |basis: PriceBasis| {
+            let has_reference =
+                |thread: &&Thread| OfferTerm { basis, ..*self }.reference(thread, lists).is_some();
+            (basis != PriceBasis::Dollars && threads.iter().any(has_reference)).then_some((basis, 100.0))
+        };
+        let has_price = threads.iter().any(|thread| self.exact_price(thread, lists).is_some());
+        let next = bases.into_iter().find_map(converted);
+        let next = next.or_else(|| bases.into_iter().filter(|_| !has_price).find_map(unconverted));
+        let Some((basis, value)) = next else { return false };
         (self.basis, self.value) = (basis, value);
         true
     }
@@ -134,8 +162,9 @@ impl OfferTerm {
         Some(self.value * self.reference(thread, lists)?)
     }
 
-    /// Describes a used term: `plan B at 90% of the list price`.
-    fn describe(&self) -> Option<String> {
+    /// Describes a used term: `plan B at 90% of the list price = $28.80`. The price is omitted if it differs between
+    /// enterprises.
+    fn describe(&self, lists: [f64; 3]) -> Option<String> {
         let plan = match self.plan {
             PlanChoice::Unused => return None,
             PlanChoice::Fixed(plan) => format!("plan {plan}"),
@@ -144,7 +173,10 @@ impl OfferTerm {
         let value = self.value_text();
         Some(match self.basis {
             PriceBasis::Dollars => format!("{plan} at ${value}"),
-            PriceBasis::ListPrice => format!("{plan} at {value}% of the list price"),
+            PriceBasis::ListPrice => match self.price(&Thread::default(), lists) {
+                Some((_, price)) => format!("{plan} at {value}% of the list price = {}", dollars_and_cents(price)),
+                None => format!("{plan} at {value}% of the list price"),
+            },
             PriceBasis::AskedPrice => format!("{plan} at {value}% of the asked price"),
         })
     }
@@ -171,9 +203,9 @@ impl OfferDraft {
         OfferDraft([OfferTerm { plan: PlanChoice::Fixed(plan), ..UNUSED_TERM }, UNUSED_TERM, UNUSED_TERM])
     }
 
-    /// Describes the used terms.
-    pub fn describe(&self) -> String {
-        self.0.iter().filter_map(OfferTerm::describe).collect::<Vec<_>>().join(", and ")
+    /// Describes the used terms with the prices that are the same for all enterprises.
+    pub fn describe(&self, lists: [f64; 3]) -> String {
+        self.0.iter().filter_map(|term| term.describe(lists)).collect::<Vec<_>>().join(", and ")
     }
 
     /// Returns the used terms as text. [`OfferDraft::parse`] reads the text.
@@ -206,6 +238,17 @@ impl OfferDraft {
             (Some(_), Some(_)) => OfferDraft::at_asked_price(),
             _ => OfferDraft::at_list_price(plan),
         }
+    }
+
+    /// Describes the prices for an enterprise that are percentages: `B at 90% of list = $28.80`.
+    pub fn describe_percentages(&self, thread: &Thread, lists: [f64; 3]) -> Option<String> {
+        let describe = |term: &OfferTerm| {
+            let (plan, _) = term.price(thread, lists)?;
+            let meaning = term.describe_value(Some(thread), lists);
+            (term.basis != PriceBasis::Dollars).then(|| format!("{plan} at {}{meaning}", term.value_text()))
+        };
+        let described: Vec<String> = self.0.iter().filter_map(describe).collect();
+        (!described.is_empty()).then(|| described.join(", "))
     }
 
     /// Returns whether the offer can be reused for other enterprises.
@@ -304,6 +347,22 @@ mod tests {
     }
 
     #[test]
+    fn values_are_described_with_their_basis() {
+        let (asking, silent) = (waiting_thread(), Thread::default());
+        let mut offer = OfferDraft::at_list_price(Plan::B);
+        offer.0[0].value = 48.0;
+        assert_eq!(offer.describe(LIST_PRICES), "plan B at 48% of the list price = $15.36");
+        assert_eq!(offer.describe_percentages(&silent, LIST_PRICES).as_deref(), Some("B at 48% of list = $15.36"));
+        assert_eq!(offer.0[0].value_with_unit(), "48%");
+        assert_eq!(offer.0[0].describe_value(None, LIST_PRICES), "% of list");
+        let asked = OfferDraft::at_asked_price();
+        assert_eq!(asked.describe_percentages(&asking, LIST_PRICES).as_deref(), Some("A at 100% of ask = $20.01"));
+        offer.0[0].basis = PriceBasis::Dollars;
+        assert_eq!((offer.0[0].value_with_unit().as_str(), offer.describe_percentages(&asking, LIST_PRICES)), ("$48.00", None));
+        assert_eq!(offer.0[0].describe_value(Some(&asking), LIST_PRICES), "$ per seat");
+    }
+
+    #[test]
     fn changing_the_basis_keeps_the_price() {
         let (asking, silent) = (waiting_thread(), Thread::default());
         let term = |plan| OfferTerm { plan: PlanChoice::Fixed(plan), ..UNUSED_TERM };
@@ -318,6 +377,9 @@ mod tests {
             assert!(plan_b.cycle_basis(&[&silent], LIST_PRICES), "an enterprise without an asked price");
             assert_eq!((plan_b.basis.label(), plan_b.price(&silent, LIST_PRICES)), (basis, Some((Plan::B, 32.0))));
         }
+        let mut without_ask = OfferTerm { basis: PriceBasis::AskedPrice, value: 60.0, ..term(Plan::B) };
+        assert!(without_ask.cycle_basis(&[&silent], LIST_PRICES), "the list price is a reference");
+        assert_eq!((without_ask.basis, without_ask.value), (PriceBasis::ListPrice, 100.0));
         let mut unpriced = OfferTerm { basis: PriceBasis::Dollars, value: 48.0, ..term(Plan::C) };
         assert!(!unpriced.cycle_basis(&[&silent], LIST_PRICES), "48 dollars are never 48 percent");
         assert_eq!((unpriced.basis, unpriced.value), (PriceBasis::Dollars, 48.0));

@@ -5,14 +5,14 @@ use ratatui::layout::Rect;
 
 use super::estimate::plan_economics;
 use super::model::Thread;
-use super::offer::{MAX_TERMS, OfferDraft, PlanChoice};
+use super::offer::{MAX_TERMS, OfferDraft, OfferTerm, PlanChoice};
 use super::sending::{self, offer_economics, summary};
 use super::{Inbox, list_prices};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{Pane, PaneBorder, PanePlacement};
-use novamind_base::formatting::{dollars, dollars_and_cents, grouped_number, percent};
+use novamind_base::formatting::{dollars, dollars_and_cents, grouped_number, parse_number, percent};
 use novamind_rules::PlanEconomics;
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, row_rects};
@@ -251,7 +251,7 @@ fn draw_term(
     };
     canvas.clear(row, role);
     canvas.register_click(row, Click::Row(placement.index, at));
-    let value = if term.plan == PlanChoice::Unused && !here { String::new() } else { term.value_text() };
+    let value = if term.plan == PlanChoice::Unused && !here { String::new() } else { term.value_with_unit() };
     let basis = if term.plan == PlanChoice::Unused && !here { "" } else { term.basis.label() };
     let mut text = format!("{:<6} {basis:<6} {value:>8}", term.plan_label());
     let single = inbox.selected_thread().filter(|_| inbox.marked.is_empty());
@@ -277,5 +277,12 @@ fn draw_term(
     if let Some(field) = inbox.value_field.as_ref().filter(|_| here) {
         let place = Rect { x: row.x + 14.min(row.width), width: row.width.saturating_sub(14).min(9), ..row };
         field.draw(canvas, place);
+        // While the user types, the basis of the value replaces the amounts of the value before the change.
+        let typed = OfferTerm { value: parse_number(field.text()).unwrap_or(0.0), ..*term };
+        let thread = single.filter(|_| typed.value > 0.0);
+        let meaning = typed.describe_value(thread, lists);
+        let after = Rect { x: place.right(), width: row.right().saturating_sub(place.right()), ..row };
+        canvas.clear(after, role);
+        canvas.draw_text(after, &format!(" {meaning}"), role);
     }
 }

@@ -103,7 +103,10 @@ impl Inbox {
         let arguments = json!({ "deals": sent.iter().map(deal).collect::<Vec<_>>() });
         let economics = plan_economics(company, &self.usage);
         let text = match sent.len() {
-            1 => single_offer_text(first, offers, &economics),
+            1 => {
+                let percentages = self.current_offer(company).describe_percentages(first, list_prices(company));
+                single_offer_text(first, offers, percentages, &economics)
+            }
             _ => self.bulk_offer_text(&planned, &economics, company),
         };
         vec![Effect::ConfirmCall { tool: SEND_TOOL, arguments, text }]
@@ -117,7 +120,7 @@ impl Inbox {
         economics: &PlanEconomics,
         company: &DisplayedCompany,
     ) -> String {
-        let terms = self.current_offer(company).describe();
+        let terms = self.current_offer(company).describe(list_prices(company));
         let mut lines = vec![
             format!("{}. Each offer uses up a turn.", summary(planned, economics)),
             format!("All receive {terms}."),
@@ -195,15 +198,21 @@ impl Inbox {
     }
 }
 
-/// Describes an offer before it is sent: each line compared with the list price and the compute cost, the asked price,
-/// and the effect on the thread.
-fn single_offer_text(thread: &Thread, offers: &[(Plan, f64)], economics: &PlanEconomics) -> String {
+/// Describes an offer before it is sent: the prices that the user entered as `percentages`, each line compared with the
+/// list price and the compute cost, the asked price, and the effect on the thread.
+fn single_offer_text(
+    thread: &Thread,
+    offers: &[(Plan, f64)],
+    percentages: Option<String>,
+    economics: &PlanEconomics,
+) -> String {
     let mut lines = vec![format!(
         "Offer to {}, {}, {}:",
         thread.customer_label(),
         thread.group,
         format_count(thread.seats, "seat")
     )];
+    lines.extend(percentages.map(|text| format!("You entered {text}.")));
     lines.extend(offer_economics(thread, offers, economics).iter().map(OfferLineEconomics::describe));
     if let Some((plan, price)) = thread.asked_price() {
         let plan = plan.map_or(String::new(), |plan| format!(" for plan {plan}"));

@@ -10,7 +10,7 @@ use novamind_record::figures::WeekFigures;
 use novamind_session::{CapacityTier, SettingId};
 use novamind_tools::ToolId;
 
-/// Number of coming weeks for which capacity must be sufficient.
+/// Number of coming weeks for which capacity must be sufficient, unless the run ends earlier.
 const CAPACITY_HORIZON_WEEKS: f64 = 2.0;
 /// Outages are reported if they occur on more than this share of days.
 const MAX_OUTAGE_SHARE: f64 = 0.01;
@@ -40,7 +40,7 @@ pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<Acti
     let weeks = libm::log(now.units / busiest) / libm::log(growth);
     let next = tiers.iter().find(|tier| tier.tier == now.tier + 1)?;
     let when = if weeks <= 1.0 { "of next week" } else { "of the week after next" };
-    (weeks < CAPACITY_HORIZON_WEEKS).then(|| ActionItem {
+    (weeks < capacity_horizon(situation.observation.days_left())).then(|| ActionItem {
         problem: Problem::Capacity,
         text: format!(
             "The busiest day of the week used {} units, {} of the {} units of capacity tier {}, and {} more than the busiest day of the week before. At that growth, the busiest day {when} exceeds the tier.",
@@ -55,6 +55,12 @@ pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<Acti
         at_risk: situation.upcoming_revenue(),
         is_urgent: false,
     })
+}
+
+/// Returns the number of coming weeks whose busiest day is projected. A shorter last week of the run is not projected,
+/// because it may not contain the busiest day.
+fn capacity_horizon(days_left: u32) -> f64 {
+    CAPACITY_HORIZON_WEEKS.min(f64::from(days_left / 7))
 }
 
 fn diagnose_overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: &CapacityTier) -> ActionItem {
@@ -190,4 +196,15 @@ pub(super) fn diagnose_backlog(situation: &DiagnosisContext<'_>) -> Option<Actio
         at_risk,
         is_urgent: true,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn capacity_is_projected_only_for_complete_weeks_of_the_run() {
+        let horizons = [400, 14, 13, 7, 3, 0].map(capacity_horizon);
+        assert_eq!(horizons, [2.0, 2.0, 1.0, 1.0, 0.0, 0.0]);
+    }
 }

@@ -24,6 +24,9 @@ pub fn draw_fan(
     filed: u32,
     forecasts: &[Forecast],
 ) {
+    // Nothing is drawn after the last day of the run.
+    let in_run = |forecast: &&Forecast| filed + forecast.horizon_days <= company.observation.last_day;
+    let forecasts: Vec<Forecast> = forecasts.iter().filter(in_run).copied().collect();
     let start = company.cash_by_day.get(filed as usize).copied().unwrap_or(company.observation.cash);
     let day = |forecast: &Forecast| f64::from(filed + forecast.horizon_days);
     let first = (f64::from(filed), start);
@@ -37,11 +40,10 @@ pub fn draw_fan(
     let cash: Vec<(f64, f64)> = cash.map(|(day, cash)| (day as f64, *cash)).collect();
     let values = cash.iter().map(|point| point.1).chain(forecasts.iter().map(|forecast| forecast.point));
     let zero = zero_if_near(values);
-    let lines = [
-        Curve::from_points(std::iter::once(first).chain(expected).collect(), Role::Series(1))
-            .with_name("expected"),
-        Curve::from_points(cash, Role::Series(0)).with_name("cash"),
-    ];
+    let expected = Curve::from_points(std::iter::once(first).chain(expected).collect(), Role::Series(1));
+    let expected = Some(expected.with_name("expected")).filter(|_| !forecasts.is_empty());
+    let cash = Curve::from_points(cash, Role::Series(0)).with_name("cash");
+    let lines: Vec<Curve> = expected.into_iter().chain([cash]).collect();
     let plot = Plot {
         curves: &lines,
         band: Some(&band).filter(|_| !forecasts.is_empty()),
@@ -50,4 +52,24 @@ pub fn draw_fan(
         y: &YAxis { unit: AxisUnit::Dollars, required_values: zero },
     };
     plot.draw(canvas, area);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_kit::{new_company, render_rows};
+
+    #[test]
+    fn fan_ends_with_the_run() {
+        let mut company = new_company();
+        company.cash_by_day = (0..=84).map(|day| 1e6 + 1e3 * f64::from(day)).collect();
+        (company.observation.day, company.observation.last_day) = (84, 84);
+        let forecast = |horizon_days| Forecast { horizon_days, point: 1.1e6, lower: 1e6, upper: 1.2e6 };
+        let rows = |filed| {
+            let forecasts = [forecast(7), forecast(28)];
+            render_rows(80, 12, |canvas, area| draw_fan(canvas, area, &company, filed, &forecasts)).join("\n")
+        };
+        assert!(rows(77).contains("expected") && !rows(77).contains("day 100"), "{}", rows(77));
+        assert!(!rows(84).contains("expected"), "{}", rows(84));
+    }
 }

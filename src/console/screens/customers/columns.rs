@@ -46,10 +46,10 @@ static COLUMNS: [(GroupColumn, &str, &str); 23] = [
     (GroupColumn::TrueValue(TrueValue::Reputation), "true rep.", "reputation"),
     (GroupColumn::TrueValue(TrueValue::Leads), "true λ/day", "lead"),
     (GroupColumn::TrueValue(TrueValue::Market), "true market", "market-cap"),
-    (GroupColumn::Customers, "subs", "subscribers"),
+    (GroupColumn::Customers, "subs", "subscriber"),
     (GroupColumn::Seats, "billed seats", "billed-seats"),
     (GroupColumn::Leads, "leads", "lead"),
-    (GroupColumn::NewCustomers, "new", "conversion"),
+    (GroupColumn::NewCustomers, "new", "new-customer"),
     (GroupColumn::Conversion, "conv.", "conversion"),
     (GroupColumn::Cancellations, "cancelled", "churn"),
     (GroupColumn::Churn, "churn 30d", "churn"),
@@ -61,7 +61,7 @@ static COLUMNS: [(GroupColumn, &str, &str); 23] = [
     (GroupColumn::DevelopmentBudget, "dev/day", "set_targeted_dev_spend"),
     (GroupColumn::StudyLevel, "level", "info-level"),
     (GroupColumn::MarketShare, "mkt share", "market-cap"),
-    (GroupColumn::Trend, "new by week", "conversion"),
+    (GroupColumn::Trend, "new by week", "new-customer"),
 ];
 
 /// Returns the visible columns. Columns with true values are visible only while true values are shown.

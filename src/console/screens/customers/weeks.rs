@@ -22,7 +22,7 @@ use novamind_tui::widgets::{XAxis, Curve, Plot, YAxis, AxisUnit};
 /// Selectable flows with their names, glossary terms and weekly figures.
 const FLOWS: [(&str, &str, WeekFigure); 3] = [
     ("leads", "lead", WeekFigure::Leads),
-    ("new customers", "conversion", WeekFigure::NewSubscribers),
+    ("new customers", "new-customer", WeekFigure::NewSubscribers),
     ("cancellations", "churn", WeekFigure::Cancellations),
 ];
 

@@ -129,7 +129,7 @@ pub static METRICS: [Metric; 22] = [
     ),
     new_metric(
         "new subscribers",
-        "conversion",
+        "new-customer",
         |week| f64::from(week.new_individual_subscribers),
         format_whole,
         true,

@@ -127,7 +127,10 @@ impl OfferTerm {
         };
         let unconverted = |basis: PriceBasis| {
             let has_reference =
-                |thread: &&Thread| OfferTerm { basis, ..*self }.reference(thread, lists).is_some();
+                |thread: &&Thread| {
+                    let term = OfferTerm { basis, ..*self };
+                    self.resolve_plan(thread).and(term.reference(thread, lists)).is_some()
+                };
             (basis != PriceBasis::Dollars && threads.iter().any(has_reference)).then_some((basis, 100.0))
         };
         let has_price = threads.iter().any(|thread| self.exact_price(thread, lists).is_some());

@@ -313,8 +313,12 @@ impl WeekReportDialog {
         let left_out = week_report.due_forecasts.len().saturating_sub(forecasts);
         let more = if left_out > 0 { format!(" · {left_out} more") } else { String::new() };
         let due_width = width.saturating_sub(more.width() as u16);
-        let due = week_report.due_forecasts.iter().take(forecasts);
-        lines.extend(due.flat_map(|due| {
+        let mut due: Vec<&ScoredForecast> = week_report.due_forecasts.iter().collect();
+        if left_out > 0 {
+            // Forecasts in range must not hide forecasts that missed.
+            due.sort_by_key(|due| due.interval_position() == Some(IntervalPosition::Inside));
+        }
+        lines.extend(due.into_iter().take(forecasts).flat_map(|due| {
             forecast_lines(canvas, due, week_report.was_forecast_filed_at_limit(due), due_width)
         }));
         if let (Some(last), true) = (lines.last_mut(), left_out > 0) {

@@ -157,7 +157,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     }
     draw_layers(app, run, canvas, body, &screen_context);
     if let Some((tour, height)) = tour {
-        tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys);
+        tour.draw(canvas, Rect { y: body.bottom(), height, ..area });
     }
 }
 

@@ -9,8 +9,9 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::action::{ACTIONS, Action};
-use super::keys::KeyBindings;
+use super::keys::{KeyBindings, KeyMeaning};
 use claims::insert_figures;
+use novamind_tui::chord::{Chord, format_sequence};
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
@@ -46,6 +47,8 @@ struct ShownStep {
     route: Vec<KeyGroup>,
     /// Whether the user can continue with the next step.
     is_done: bool,
+    /// Actions of the tour with the keys that work where the user is.
+    buttons: Vec<(Action, String)>,
 }
 
 impl Tour {
@@ -77,6 +80,7 @@ impl Tour {
             }),
             route: Router { facts, keys }.route(step),
             is_done: self.is_step_done(company),
+            buttons: working_buttons(facts, keys),
         };
         true
     }
@@ -129,7 +133,7 @@ impl Tour {
     }
 
     /// Draws the current step of the tour.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, keys: &KeyBindings) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         canvas.clear(area, Role::Text);
         canvas.draw_text(area, &"─".repeat(area.width as usize), Role::Focus);
         let (number, count) = self.shown.position;
@@ -137,8 +141,8 @@ impl Tour {
         let place = Rect { x: area.x + 2, width: area.width.saturating_sub(2), ..area };
         canvas.draw_text(Rect { height: 1, ..place }, &title, Role::Title);
         let mut right = area.right().saturating_sub(2);
-        for action in [Action::TourClose, Action::TourContinue, Action::TourBack] {
-            let Some(key) = keys.label(action) else { continue };
+        for (action, key) in &self.shown.buttons {
+            let action = *action;
             if action == Action::TourContinue && !self.shown.is_done {
                 continue;
             }
@@ -158,6 +162,20 @@ impl Tour {
             canvas.draw_text(row, &line, if is_keys { Role::Strong } else { Role::Text });
         }
     }
+}
+
+/// Returns the actions of the tour with their keys, from the right. Keys that have another meaning in the focused pane
+/// or dialog are omitted.
+fn working_buttons(facts: &TourFacts<'_>, keys: &KeyBindings) -> Vec<(Action, String)> {
+    let button = |action: Action| {
+        let works = |chords: &&[Chord]| match keys.meaning(&facts.scopes, chords) {
+            KeyMeaning::Action(meaning) => meaning == action,
+            KeyMeaning::Unbound => true,
+            KeyMeaning::Prefix => false,
+        };
+        Some((action, format_sequence(keys.chords(action).find(works)?)))
+    };
+    [Action::TourClose, Action::TourContinue, Action::TourBack].into_iter().filter_map(button).collect()
 }
 
 /// Returns the step at which a user resumes: the step after the last one whose goal is reached, not counting steps

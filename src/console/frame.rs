@@ -267,8 +267,8 @@ fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Displaye
 }
 
 /// Indexes of the pieces of the header that are less important than the number of subscribers, in the order in which
-/// they are dropped: the name of the program and the week.
-const DROPPED_PIECES: [usize; 2] = [0, 2];
+/// they are dropped: the name of the program and the change in cash.
+const DROPPED_PIECES: [usize; 2] = [0, 4];
 /// Index of the number of subscribers.
 const SUBSCRIBERS_PIECE: usize = 6;
 
@@ -529,7 +529,7 @@ mod tests {
     use novamind_worker::message::SimulatedDay;
 
     #[test]
-    fn header_drops_the_name_before_the_subscribers() {
+    fn header_drops_the_name_and_the_cash_change_before_the_week() {
         let pieces = [
             " NovaMind",
             "  day 46/500",
@@ -542,7 +542,7 @@ mod tests {
         let dropped = |width| pieces_before_subscribers(&pieces, width);
         assert_eq!(dropped(120), [0; 0]);
         assert_eq!(dropped(80), [0]);
-        assert_eq!(dropped(70), [0, 2]);
+        assert_eq!(dropped(70), [0, 4]);
     }
 
     #[test]

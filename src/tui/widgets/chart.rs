@@ -1,9 +1,10 @@
 //! Charts: curves with round axis labels, a grid, bands, and names at the ends of the curves.
 
 use ratatui::layout::Rect;
+use ratatui::symbols::Marker;
 use unicode_width::UnicodeWidthStr;
 
-use super::raster::Raster;
+use super::raster::{Raster, row_of_share};
 use super::scale::{AxisUnit, ticks, widen_to_ticks};
 use crate::canvas::{Align, Canvas};
 use crate::text::format_change;
@@ -17,6 +18,11 @@ const MAX_BAND_DISTANCE: f64 = 1.0;
 const MIN_BAND_DISTANCE: f64 = 0.25;
 /// Distance between the arrows that mark a cut band, in columns.
 const CUT_MARK_DISTANCE: u16 = 4;
+
+/// Maximum number of rows of a chart that labels only values near the middle of a row.
+const MAX_LOW_CHART_ROWS: u16 = 5;
+/// Largest distance between a labelled value and the middle of its row in a low chart, in rows.
+const MAX_LABEL_DISTANCE: f64 = 0.25;
 
 /// Minimum width of a chart with names at the ends of its curves.
 const MIN_WIDTH_FOR_NAMES: u16 = 36;
@@ -126,6 +132,7 @@ type AxisLabel = (u16, u16, String);
 
 struct PlotFrame {
     area: Rect,
+    marker: Marker,
     x: [f64; 2],
     y: [f64; 2],
 }
@@ -140,9 +147,18 @@ impl PlotFrame {
         self.area.x + (PlotFrame::fraction(self.x, x).clamp(0.0, 1.0) * max).round() as u16
     }
 
+    /// Returns the row in which curves are drawn at a value.
     fn row(&self, y: f64) -> u16 {
-        let max = f64::from(self.area.height.saturating_sub(1));
-        self.area.y + ((1.0 - PlotFrame::fraction(self.y, y).clamp(0.0, 1.0)) * max).round() as u16
+        self.area.y + row_of_share(self.marker, self.area.height, PlotFrame::fraction(self.y, y)).0
+    }
+
+    /// Returns whether a label of a value describes its row. In a low chart, a row covers a large range of values, so
+    /// only values near the middle of a row and the ends of the axis are labelled.
+    fn is_labelled(&self, y: f64) -> bool {
+        let share = PlotFrame::fraction(self.y, y);
+        let is_end = !(1e-9..=1.0 - 1e-9).contains(&share);
+        let distance = row_of_share(self.marker, self.area.height, share).1;
+        self.area.height > MAX_LOW_CHART_ROWS || is_end || distance <= MAX_LABEL_DISTANCE
     }
 }
 
@@ -187,7 +203,7 @@ impl Plot<'_> {
             width: plot - if names > 0 { names + 1 } else { 0 },
             height: area.height - 2,
         };
-        let frame = PlotFrame { area: inside, x, y };
+        let frame = PlotFrame { area: inside, marker: canvas.marker, x, y };
         draw_y_axis(canvas, area, &frame, &marks, &labels);
         self.draw_x_axis(canvas, area, &frame);
         self.draw_band(canvas, &frame, limits);
@@ -365,7 +381,7 @@ fn draw_y_axis(canvas: &mut Canvas<'_>, area: Rect, frame: &PlotFrame, marks: &[
     let mut free = inside.bottom();
     for (value, label) in marks.iter().zip(labels) {
         let y = frame.row(*value);
-        if y >= free {
+        if y >= free || !frame.is_labelled(*value) {
             continue;
         }
         free = y;

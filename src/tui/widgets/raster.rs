@@ -18,6 +18,24 @@ pub struct Raster {
     cells: Vec<(u8, Role)>,
 }
 
+/// Returns the number of dots per cell, horizontally and vertically.
+fn dots_per_cell(marker: Marker) -> (usize, usize) {
+    match marker {
+        Marker::Braille => (2, 4),
+        Marker::HalfBlock => (1, 2),
+        _ => (1, 1),
+    }
+}
+
+/// Returns the row, counted from the top, in which a raster with `rows` rows draws a share of its height, and the
+/// distance of the share from the middle of that row, in rows.
+pub fn row_of_share(marker: Marker, rows: u16, share: f64) -> (u16, f64) {
+    let down = f64::from(dots_per_cell(marker).1 as u16);
+    let dot = (1.0 - share.clamp(0.0, 1.0)) * (f64::from(rows) * down - 1.0).max(0.0);
+    let row = (dot.round() / down).floor();
+    (row as u16, (dot - (row * down + (down - 1.0) / 2.0)).abs() / down)
+}
+
 impl Raster {
     /// Returns an empty raster with a size in cells.
     pub fn new(marker: Marker, columns: u16, rows: u16) -> Raster {
@@ -25,18 +43,9 @@ impl Raster {
         Raster { marker, columns, rows, cells: vec![(0, Role::Text); columns * rows] }
     }
 
-    /// Returns the number of dots per cell, horizontally and vertically.
-    fn dots_per_cell(&self) -> (usize, usize) {
-        match self.marker {
-            Marker::Braille => (2, 4),
-            Marker::HalfBlock => (1, 2),
-            _ => (1, 1),
-        }
-    }
-
     /// Sets a dot. Coordinates count dots from the top left corner.
     fn set_dot(&mut self, x: usize, y: usize, role: Role) {
-        let (across, down) = self.dots_per_cell();
+        let (across, down) = dots_per_cell(self.marker);
         let (column, row) = (x / across, y / down);
         if column >= self.columns || row >= self.rows {
             return;
@@ -62,7 +71,7 @@ impl Raster {
     }
 
     fn dot_position(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        let (across, down) = self.dots_per_cell();
+        let (across, down) = dots_per_cell(self.marker);
         let max = |dots: usize| dots.saturating_sub(1) as f64;
         (x.clamp(0.0, 1.0) * max(self.columns * across), (1.0 - y.clamp(0.0, 1.0)) * max(self.rows * down))
     }
@@ -82,5 +91,22 @@ impl Raster {
             let cell = Rect { x, y, width: 1, height: 1 };
             canvas.draw_text(cell, glyph.encode_utf8(&mut [0; 4]), *role);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn row_of_share_is_the_row_of_the_drawn_dot() {
+        for (rows, share, row) in [(4, 0.0, 3), (4, 0.18, 3), (4, 0.5, 2), (4, 1.0, 0), (3, 0.5, 1), (5, 0.5, 2)] {
+            assert_eq!(row_of_share(Marker::Braille, rows, share).0, row, "{share} of {rows} rows");
+            let mut raster = Raster::new(Marker::Braille, 1, rows);
+            raster.draw_line((0.0, share), (0.0, share), Role::Text);
+            assert_ne!(raster.cells[usize::from(row)].0, 0, "{share} of {rows} rows");
+        }
+        assert!(row_of_share(Marker::Braille, 4, 0.5).1 > 0.25 && row_of_share(Marker::Braille, 5, 0.5).1 < 0.25);
+        assert_eq!(row_of_share(Marker::Dot, 4, 1.0 / 3.0).0, 2);
     }
 }

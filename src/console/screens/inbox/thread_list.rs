@@ -9,7 +9,8 @@ use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::own_commands::ListRows;
 use crate::screens::panes::{Pane, PaneBorder, PanePlacement};
-use novamind_base::formatting::grouped_number;
+use novamind_base::formatting::{grouped_number, pluralize};
+use novamind_report::funnel::Funnel;
 use novamind_rules::format_offer_lines;
 use novamind_tui::canvas::{Canvas, row_rects};
 use novamind_tui::text::{format_count, wrap};
@@ -154,10 +155,14 @@ fn empty_text(inbox: &Inbox, context: &ScreenContext<'_>) -> String {
     }
     let funnels: Vec<String> =
         context.company.funnels.iter().map(|funnel| format!("· {}", funnel.describe())).collect();
+    let lost: u32 = context.company.funnels.iter().map(Funnel::lost_before_request).sum();
+    let reason = match lost {
+        0 => format!("Advertise to enterprise groups ({} set_targeted_ad_spend).", key(Action::Tools)),
+        lost => format!("{} arrived and found no plan good enough.", pluralize(lost, "enterprise")),
+    };
     format!(
-        "No enterprise has asked for an offer yet. Advertise to enterprise groups ({} set_targeted_ad_spend). A higher \
-         model tier, development for their group and a quota for all seats make a plan more attractive.\n\n{}",
-        key(Action::Tools),
+        "No enterprise has asked for an offer yet. {reason} A higher model tier, development for their group and a quota \
+         for all seats make a plan more attractive.\n\n{}",
         funnels.join("\n")
     )
 }

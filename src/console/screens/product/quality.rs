@@ -1,6 +1,7 @@
 //! The pane with delivered quality by group and the components of delivered quality.
 
 use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
 
 use super::panel::{ProductPanel, show_cell_effect};
 use super::{Product, ProductPane};
@@ -25,14 +26,11 @@ impl ProductPanel for QualityComponentsPane {
         company.quality.len()
     }
 
-    fn summary(&self, _: &Product, company: &DisplayedCompany, _: usize) -> String {
+    fn summary(&self, _: &Product, company: &DisplayedCompany, width: usize) -> String {
         let (base, shared) = company.quality_base;
-        let best =
-            company.quality.iter().max_by(|left, right| left.group_bonus.total_cmp(&right.group_bonus));
-        let best = best.filter(|best| best.group_bonus > 0.0);
-        let best =
-            best.map_or(String::new(), |best| format!(" · {} {}", best.group.id(), quality_change(best.group_bonus)));
-        format!("base {} · general {}{best}", format_quality(base), quality_change(shared))
+        let bonuses = company.quality.iter().map(|quality| (quality.group.id(), quality.group_bonus));
+        let bonuses = bonuses.filter(|(_, bonus)| *bonus > 0.0).collect();
+        summary(format!("base {} · general {}", format_quality(base), quality_change(shared)), bonuses, width)
     }
 
     fn destination(&self, _: &Product) -> &'static str {
@@ -82,5 +80,37 @@ impl ProductPanel for QualityComponentsPane {
             canvas.draw_text(row, &text, role);
             canvas.register_click(row, Click::Row(placement.index, at));
         }
+    }
+}
+
+/// Appends the bonuses of groups to a text, the largest first. If they do not all fit, the text ends with the number of
+/// omitted groups.
+fn summary(text: String, mut bonuses: Vec<(&str, f64)>, width: usize) -> String {
+    bonuses.sort_by(|left, right| right.1.total_cmp(&left.1));
+    let with_first = |count: usize| {
+        let shown = bonuses[..count].iter().map(|(group, bonus)| format!(" · {group} {}", quality_change(*bonus)));
+        let more = match bonuses.len() - count {
+            0 => String::new(),
+            omitted => format!(" · {omitted} more"),
+        };
+        format!("{text}{}{more}", shown.collect::<String>())
+    };
+    let fitting = (0..=bonuses.len()).rev().map(with_first).find(|text| text.width() <= width);
+    fitting.unwrap_or_else(|| with_first(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn summary_counts_the_omitted_groups() {
+        let bonuses = || vec![("S1", 0.2), ("S2", 1.354), ("E1", 0.1)];
+        let text = |width| summary("base 0.200".to_owned(), bonuses(), width);
+        let all = text(80);
+        assert!(all.contains("S2") && all.contains("S1") && all.contains("E1") && !all.contains("more"), "{all}");
+        let some = text(all.width() - 1);
+        assert!(some.contains(" · S2 ") && some.ends_with(" more"), "{some}");
+        assert!(text(5).ends_with("3 more"));
     }
 }

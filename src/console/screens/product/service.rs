@@ -53,9 +53,9 @@ impl ProductPanel for ServicePane {
 type ServiceMeasure = (&'static str, fn(&ServiceDay) -> f64, fn(f64) -> String, fn(&[f64]) -> f64);
 
 static SERVICE_MEASURES: [ServiceMeasure; 4] = [
-    ("utilization", ServiceDay::utilization, |share| percent(share, 0), max_value),
-    ("latency p95, ms", |day| day.latency_ms, |value| grouped_number(value, 0), max_value),
-    ("error rate", |day| day.error_rate, |share| percent(share, 2), max_value),
+    ("utilization, max", ServiceDay::utilization, |share| percent(share, 0), max_value),
+    ("p95 ms, max", |day| day.latency_ms, |value| grouped_number(value, 0), max_value),
+    ("error rate, max", |day| day.error_rate, |share| percent(share, 2), max_value),
     ("outage, minutes", |day| day.downtime_minutes, format_number, |days| days.iter().sum()),
 ];
 
@@ -109,7 +109,7 @@ fn draw_measure(canvas: &mut Canvas<'_>, row: Rect, (name, read, write, together
         let place = Rect { x: row.x + 44, width: room, ..row };
         canvas.draw_text(place, &sparkline(&values, room as usize), Role::Series(0));
     }
-    let overloaded = *name == "utilization" && values.last().is_some_and(|value| *value > 1.0);
+    let overloaded = *name == "utilization, max" && values.last().is_some_and(|value| *value > 1.0);
     if overloaded {
         canvas.draw_aligned(Rect { width: 43.min(row.width), ..row }, "!", Role::Bad, Align::Right);
     }
@@ -124,7 +124,7 @@ fn draw_outages(canvas: &mut Canvas<'_>, row: Rect, days: &[ServiceDay]) {
         .map(|day| format!("day {} {} min", day.day, format_number(day.downtime_minutes)))
         .collect();
     let text = match outages.is_empty() {
-        true => "No outages. 7-day and 28-day figures are peaks.".to_owned(),
+        true => "No outages.".to_owned(),
         false => format!("outages: {}", outages.join(" · ")),
     };
     canvas.draw_text(row, &text, Role::Dim);

@@ -106,6 +106,14 @@ mod tests {
     use crate::test_kit::new_company;
 
     #[test]
+    fn enter_is_not_an_answer() {
+        let keys = crate::keys::KeyBindings::bundled();
+        let confirm = ConfirmDialog::new("lines", "Send?", Vec::new());
+        let enter = novamind_tui::chord::Chord::parse("enter").expect("a key");
+        assert_eq!(keys.action(&confirm.scopes(), enter), None);
+    }
+
+    #[test]
     fn long_texts_keep_the_answers_visible() {
         let text: Vec<String> = (1..=30).map(|line| format!("line {line}.")).collect();
         let confirm = ConfirmDialog::new("lines", text.join("\n"), Vec::new());

@@ -42,7 +42,7 @@ impl Dialog for OpponentsPage {
     }
 
     fn scopes(&self) -> Vec<Scope> {
-        vec![Scope::Dialog]
+        vec![Scope::Dialog, Scope::List]
     }
 
     fn hints(&self) -> Vec<Action> {
@@ -50,7 +50,10 @@ impl Dialog for OpponentsPage {
     }
 
     fn handle_action(&mut self, action: Action, _: &ScreenContext<'_>) -> DialogResponse {
-        if action == Action::Cancel { DialogResponse::close() } else { DialogResponse::stay() }
+        match action {
+            Action::Cancel | Action::Close | Action::Open => DialogResponse::close(),
+            _ => DialogResponse::stay(),
+        }
     }
 
     fn take_answers(&mut self) {

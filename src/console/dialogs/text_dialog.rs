@@ -40,7 +40,7 @@ impl Dialog for TextDialog {
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         let last = self.text.lines().count().saturating_sub(1);
         match action {
-            Action::Cancel | Action::Close => return DialogResponse::close(),
+            Action::Cancel | Action::Close | Action::Open => return DialogResponse::close(),
             Action::ScrollUp => self.first_line = self.first_line.saturating_sub(1),
             Action::ScrollDown => self.first_line = (self.first_line + 1).min(last),
             Action::PageUp => self.first_line = self.first_line.saturating_sub(context.page_rows as usize),

@@ -126,7 +126,7 @@ impl Dialog for WeekReportDialog {
 
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
-            Action::Cancel | Action::Close | Action::Report => DialogResponse::close(),
+            Action::Cancel | Action::Close | Action::Report | Action::Open => DialogResponse::close(),
             Action::PageDown if !self.is_complete => {
                 self.open_complete_report();
                 DialogResponse::stay()

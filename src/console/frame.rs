@@ -463,6 +463,13 @@ fn action_title(app: &App, action: Action) -> &'static str {
             Some(_) => "debrief",
             None => "final page",
         },
+        // In a form, the enter key also moves to the next row.
+        Some(run) if action == Action::Commit && run.screen == ScreenId::Tools && app.layers.is_empty() => {
+            match app.hints().contains(&Action::Apply) {
+                true => "accept, next row",
+                false => action.entry().title,
+            }
+        }
         _ => action.entry().title,
     }
 }

@@ -30,7 +30,7 @@ impl Pane<Tools> for FormPane {
         match tools.visible_form() {
             Some(form) if form.code_editor().is_some() => vec![Action::Apply, Action::LeaveEditor],
             Some(form) if form.is_typing() => {
-                vec![Action::CommitDown, Action::CommitNext, Action::Apply, Action::Discard]
+                vec![Action::Commit, Action::CommitNext, Action::Apply, Action::Discard]
             }
             _ => vec![
                 Action::EditCell,
@@ -343,7 +343,10 @@ fn key_hints(form: &ToolForm, context: &ScreenContext<'_>) -> String {
     match form.sheet.blocks.is_empty() {
         true => "enter runs the tool".to_owned(),
         false if form.code_editor().is_some() => context.hints(&[Action::Apply, Action::LeaveEditor]),
-        false if form.is_typing() => context.hints(&[Action::CommitDown, Action::Apply, Action::Discard]),
+        false if form.is_typing() => {
+            let enter = context.keys.label(Action::Commit).unwrap_or_default();
+            format!("{enter} accept, next row · {}", context.hints(&[Action::Apply, Action::Discard]))
+        },
         false => format!(
             "{} {} · {}",
             context.hint(Action::EditCell),

@@ -97,8 +97,7 @@ fn tour_texts_have_existing_names_and_fit_small_windows() {
             }
             for (width, most) in [(60, 6), (80, 5), (120, 4)] {
                 assert!(tour.height(width) <= most, "{}: {:?}", step.title, tour.lines(width));
-                let shown =
-                    render_rows(width, tour.height(width), |canvas, area| tour.draw(canvas, area));
+                let shown = render_rows(width, tour.height(width), |canvas, area| tour.draw(canvas, area));
                 let shown = shown.join(" ");
                 assert!(shown.contains("Tour · ") && shown.contains("→ "), "{shown}");
                 assert!(!shown.contains('{') && !shown.contains('[') && !shown.contains('…'), "{shown}");

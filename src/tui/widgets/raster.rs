@@ -100,13 +100,17 @@ mod tests {
 
     #[test]
     fn row_of_share_is_the_row_of_the_drawn_dot() {
-        for (rows, share, row) in [(4, 0.0, 3), (4, 0.18, 3), (4, 0.5, 2), (4, 1.0, 0), (3, 0.5, 1), (5, 0.5, 2)] {
+        for (rows, share, row) in
+            [(4, 0.0, 3), (4, 0.18, 3), (4, 0.5, 2), (4, 1.0, 0), (3, 0.5, 1), (5, 0.5, 2)]
+        {
             assert_eq!(row_of_share(Marker::Braille, rows, share).0, row, "{share} of {rows} rows");
             let mut raster = Raster::new(Marker::Braille, 1, rows);
             raster.draw_line((0.0, share), (0.0, share), Role::Text);
             assert_ne!(raster.cells[usize::from(row)].0, 0, "{share} of {rows} rows");
         }
-        assert!(row_of_share(Marker::Braille, 4, 0.5).1 > 0.25 && row_of_share(Marker::Braille, 5, 0.5).1 < 0.25);
+        assert!(
+            row_of_share(Marker::Braille, 4, 0.5).1 > 0.25 && row_of_share(Marker::Braille, 5, 0.5).1 < 0.25
+        );
         assert_eq!(row_of_share(Marker::Dot, 4, 1.0 / 3.0).0, 2);
     }
 }

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
+use novamind_record::files::write_private_atomically;
 use novamind_study::CodeDigest;
 
-use crate::folder::{read_if_exists, write_private};
+use crate::folder::read_if_exists;
 
 /// Name of the file with the digests of tokens and codes.
 const ACCESS_FILE: &str = "access.json";
@@ -94,7 +95,7 @@ impl Access {
             issued.push(Credentials { label: label.clone(), token, code });
         }
         let text = serde_json::to_vec_pretty(&entries).unwrap_or_default();
-        write_private(&self.path, &text)?;
+        write_private_atomically(&self.path, &text)?;
         Ok(issued)
     }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
-use novamind_record::files::write_atomically;
+use novamind_record::files::write_private_atomically;
 use novamind_record::folder::configuration::CONSENT_FILE;
 use novamind_study::{
     ASSIGNMENT_FILE, Assignment, AssignmentRow, CodeDigest, SEAL_KEY_FILE, STUDY_FILE, Study,
@@ -222,13 +222,13 @@ impl HostFolder {
         {
             copy_if_exists(&entry.path(), &copy.join(QUESTIONS_FOLDER).join(entry.file_name()))?;
         }
-        write_private(&copy.join(ASSIGNMENT_FILE), assignment.as_bytes())
+        write_private_atomically(&copy.join(ASSIGNMENT_FILE), assignment.as_bytes())
     }
 }
 
 fn write_description(path: &Path, description: &HostDescription) -> Result<(), RunError> {
     let text = toml::to_string(description).map_err(|error| invalid(error.to_string()))?;
-    write_private(path, text.as_bytes())
+    write_private_atomically(path, text.as_bytes())
 }
 
 fn describe_difference(found: &HostDescription, current: &HostDescription, path: &Path) -> String {
@@ -264,12 +264,6 @@ pub(crate) fn create_private_folder(path: &Path) -> Result<(), RunError> {
     std::fs::set_permissions(path, Permissions::from_mode(0o700)).map_err(RunError::io(path))
 }
 
-/// Replaces a file that only the user can read. The folder has to be private, because the file is readable for a moment.
-pub(crate) fn write_private(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
-    write_atomically(path, bytes)?;
-    std::fs::set_permissions(path, Permissions::from_mode(0o600)).map_err(RunError::io(path))
-}
-
 pub(crate) fn read_if_exists(path: &Path) -> Result<Option<Vec<u8>>, RunError> {
     match std::fs::read(path) {
         Ok(bytes) => Ok(Some(bytes)),
@@ -280,7 +274,7 @@ pub(crate) fn read_if_exists(path: &Path) -> Result<Option<Vec<u8>>, RunError> {
 
 fn copy_if_exists(from: &Path, to: &Path) -> Result<(), RunError> {
     match read_if_exists(from)? {
-        Some(bytes) => write_private(to, &bytes),
+        Some(bytes) => write_private_atomically(to, &bytes),
         None => Ok(()),
     }
 }

@@ -9,11 +9,12 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
+use novamind_record::files::write_private_atomically;
 
 use crate::access::Access;
 use crate::attachment::{AttachError, Attachment, ClientKind, CloseReason, Notice, WindowSize};
 use crate::audit::{AuditEvent, AuditLog};
-use crate::folder::{HostFolder, read_if_exists, write_private};
+use crate::folder::{HostFolder, read_if_exists};
 use crate::process::SessionProgram;
 use crate::session::HostedSession;
 
@@ -263,7 +264,8 @@ impl Sessions {
         let mut changed = states.clone();
         changed.insert(label.to_owned(), state);
         let text = serde_json::to_vec_pretty(&changed).unwrap_or_default();
-        write_private(&self.0.folder.path().join(STATES_FILE), &text).map_err(ControlError::Save)?;
+        write_private_atomically(&self.0.folder.path().join(STATES_FILE), &text)
+            .map_err(ControlError::Save)?;
         *states = changed;
         Ok(())
     }

@@ -3,7 +3,7 @@
 //!
 //! The `open_regular_file` functions reject pipes and devices, because opening a pipe would block the program.
 
-use std::fs::File;
+use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
 use std::path::Path;
 
@@ -14,8 +14,32 @@ use crate::error::RunError;
 /// # Errors
 /// The file cannot be written. The old file is kept, unless only the folder sync failed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+    replace_with_draft(path, bytes, |draft| File::create(draft))
+}
+
+/// Replaces a file atomically like [`write_atomically`]. On Unix, only the file's owner can read the file.
+///
+/// # Errors
+/// Same as [`write_atomically`].
+pub fn write_private_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+    replace_with_draft(path, bytes, |draft| {
+        // The draft of a crashed process can have other permissions.
+        let _ = std::fs::remove_file(draft);
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+        options.open(draft)
+    })
+}
+
+fn replace_with_draft(
+    path: &Path,
+    bytes: &[u8],
+    create: impl FnOnce(&Path) -> std::io::Result<File>,
+) -> Result<(), RunError> {
     let draft = path.with_extension("draft");
-    let written = File::create(&draft)
+    let written = create(&draft)
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
         .and_then(|()| std::fs::rename(&draft, path));
     if let Err(error) = written {

@@ -228,6 +228,12 @@ fn secret_seeds_are_drawn_once_and_kept_by_added_participants() {
         text.lines().skip(1).map(seed).collect()
     };
     assert_eq!(seeds(&first).len(), 2);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let file = fs::metadata(lab.path("pilot/assignment.csv")).expect("a file");
+        assert_eq!(file.permissions().mode() & 0o777, 0o600);
+    }
     assert!(seeds(&first).iter().all(|seed| (1 << 32..1 << 63).contains(seed)), "{first}");
     assert_eq!(lab.run("assign", &["--add", "5"]).exit_code, 0);
     let added = lab.assignment();

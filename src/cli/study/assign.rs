@@ -7,7 +7,7 @@ use clap::Args;
 
 use crate::cli::{Failure, print};
 use crate::record::error::RunError;
-use crate::record::files::write_atomically;
+use crate::record::files::{write_atomically, write_private_atomically};
 use novamind_study::{ASSIGNMENT_FILE, Assignment, Protocol, STUDY_FILE, SeedPlan};
 
 #[derive(Debug, Args)]
@@ -64,7 +64,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let csv = made.to_csv();
     Assignment::parse(&target.display().to_string(), csv.as_bytes()).map_err(RunError::from)?;
     // The file is replaced atomically, because a participant may start a session at the same time.
-    write_atomically(&target, csv.as_bytes())?;
+    // Other accounts of the machine must not read secret seeds.
+    let write = match protocol.seeds.plan {
+        SeedPlan::Secret => write_private_atomically,
+        _ => write_atomically,
+    };
+    write(&target, csv.as_bytes())?;
     print(&format!(
         "{}: {} participants in blocks of {cells}, drawn with seed {draw}\n{}{}",
         target.display(),

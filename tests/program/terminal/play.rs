@@ -53,16 +53,21 @@ fn first_run_starts_the_tour() {
     terminal.type_keys("\x1b");
     terminal.wait_until_gone("Participation curve");
     terminal.type_keys("3");
+    terminal.wait_for("open the group");
+    terminal.type_keys("\r\t");
     terminal.wait_for("f3 continue");
     terminal.type_keys("\x1bOR");
     terminal.wait_for("Tour · 4 of 15");
-    terminal.type_keys(":set_prices\r");
-    terminal.wait_for("set_prices · pricing");
-    terminal.type_keys("\r9\r\x13");
-    terminal.wait_for("Tour · 5 of 15");
-    for step in 6..=8 {
-        terminal.type_keys("\x1bOR");
-        terminal.wait_for(&format!("Tour · {step} of 15"));
+    for (tool, value, next_step) in [
+        ("set_prices", "9", 5),
+        ("set_model_tiers", "3", 6),
+        ("set_usage_quotas", "400", 7),
+        ("set_targeted_ad_spend", "500", 8),
+    ] {
+        terminal.type_keys(&format!(":{tool}\r"));
+        terminal.wait_for(&format!("{tool} · "));
+        terminal.type_keys(&format!("\r{value}\r\x13"));
+        terminal.wait_for(&format!("Tour · {next_step} of 15"));
     }
     terminal.type_keys("n\rcurious\r");
     terminal.wait_for("[3 forecasts]");

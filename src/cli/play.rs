@@ -156,6 +156,7 @@ pub fn guide_participant(folder: &Path, options: &Options, context: &Context) ->
 /// # Errors
 /// The folder or the study cannot be read, or the terminal fails. The failure contains the exit code of a session that
 /// did not end normally.
+#[cfg(all(feature = "server", unix))]
 pub fn run_hosted_session(folder: &Path, label: &str, plain: bool) -> Result<(), Failure> {
     std::env::set_current_dir(folder)
         .map_err(|error| Failure::failed(format!("the folder of the session cannot be opened: {error}")))?;

@@ -18,7 +18,8 @@ trap 'echo saved > "$3/runs/saved"; exit 0' HUP
 stty -echo
 echo "ready $1 $(stty size)"
 while true; do
-  read -r line || continue
+  # A signal can interrupt the read. Without a terminal, the script must not run for ever.
+  read -r line || { failures=$((failures + 1)); [ $failures -lt 20 ] || exit 4; sleep 0.1; continue; }
   case $line in
     crash) exit 3 ;;
     leave) exit 0 ;;

@@ -103,7 +103,7 @@ pub enum Order {
 
 impl Order {
     /// Returns whether the order is executed in a hosted session. Orders that write files of the user's choice or start
-    /// programs are dropped, whatever requested them.
+    /// programs are dropped, regardless of what requested them.
     fn is_executed_in_hosted_session(&self) -> bool {
         match self {
             Order::Job(Job::SavePreferences(_))

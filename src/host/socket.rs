@@ -1,4 +1,4 @@
-//! The Unix socket of the host, to which `novamind host attach` connects. The kernel tells which account connects.
+//! The Unix socket of the host, to which `novamind host attach` connects. The kernel reports which account connects.
 
 use std::io;
 use std::os::unix::fs::{FileTypeExt, PermissionsExt};

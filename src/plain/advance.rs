@@ -277,7 +277,7 @@ pub fn ask_next_week_input(
 /// coverage.
 fn naive_coverage(session: &Session, seen: &Observation) -> Option<String> {
     let is_shown = session.manifest().mode != Mode::Baseline && seen.horizons_in_run > 0;
-    is_shown.then(|| seen.describe_coverage()).flatten()
+    is_shown.then(|| seen.describe_ranges()).flatten()
 }
 
 /// Asks for the rationale. Returns `None` if the player cancels.

@@ -391,7 +391,7 @@ impl Interpreter {
             return response;
         }
         self.held_result = Some(response);
-        let text = "the run is over; please answer the last questions".to_owned();
+        let text = "the run has ended; please answer the last questions".to_owned();
         CommandResponse::success("next", text, json!({ "ended": true }))
     }
 

@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(delay_seconds(&[97.0, 97.0, 97.0, 98.0, 100.0], 100.0), 1);
         assert_eq!(delay_seconds(&[96.0, 97.0, 97.0, 97.0, 98.0, 100.0], 100.0), 2);
         assert_eq!(delay_seconds(&[100.0; 10], 100.0), 32);
-        assert_eq!(delay_seconds(&[100.0; 10], 132.0), 0, "the delay is over");
+        assert_eq!(delay_seconds(&[100.0; 10], 132.0), 0, "the delay has ended");
         assert_eq!(delay_seconds(&[100.0; 40], 100.0), 600);
         assert_eq!(delay_seconds(&[100.0; 40], 3700.0), 0);
         // Setting the clock back does not remove the delay.

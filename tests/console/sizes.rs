@@ -246,7 +246,7 @@ fn cut_labels(buffer: &Buffer, theme: &Theme) -> Vec<String> {
     (0..buffer.area.height)
         .filter(|y| (0..buffer.area.width).any(|x| is_cut(x, *y)))
         .map(|y| row(y).trim_end().to_owned())
-        // After the first key of a sequence, the ellipsis stands for the next key.
+        // After the first key of a sequence, the ellipsis represents the next key.
         .filter(|row| !row.contains("┏ g … "))
         .collect()
 }

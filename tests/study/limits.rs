@@ -95,7 +95,7 @@ fn leaving_and_returning_gains_no_time() {
             run.session().activity().stop_clock(Some("tea")).expect("it stops");
             run.leave(cause, 500);
             assert_eq!(run.seconds_left(), 300.0, "{about}");
-            // A break of half an hour does not count, except a minute that nobody saw before a kill.
+            // A break of half an hour does not count, except the unrecorded minute before a kill.
             run.leave(cause, 1800);
             let unseen = if cause.is_none() { 60.0 } else { 0.0 };
             assert_eq!(run.seconds_left(), 300.0 - unseen, "{about}");

@@ -210,7 +210,7 @@
     element("connection").hidden = true;
     const buttons = { taken_over: "Continue here", ended: "Open the session again", failed: "Try again" };
     const retryAfter = { paused: PAUSED_RETRY_MS, shutdown: MAX_RETRY_MS }[reason];
-    showDialog(retryAfter ? `${text} This window connects again by itself.` : text, buttons[reason]);
+    showDialog(retryAfter ? `${text} This window connects again automatically.` : text, buttons[reason]);
     if (retryAfter) retryTimer = setTimeout(connect, retryAfter);
   }
 

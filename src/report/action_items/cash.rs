@@ -72,7 +72,7 @@ fn diagnose_added_ads(situation: &DiagnosisContext<'_>, weeks: f64) -> Option<Ac
     Some(ActionItem {
         problem: Problem::Runway,
         text: format!(
-            "You raised ads from {} to {} a day. If they add no signups, cash lasts {}.",
+            "You raised ads from {} to {} a day. If they add no signups, cash is expected to last {}.",
             format_money(change.before),
             format_money(change.now),
             pluralize(weeks as u32, "week")

@@ -430,7 +430,7 @@ fn runway_after_a_raise_of_ads_names_its_premise() {
     );
     assert!(!need.is_urgent, "{need:?}");
     let seen = session.company().observe();
-    let coverage = seen.describe_coverage().expect("a premise");
+    let coverage = seen.describe_ranges().expect("a premise");
     assert!(coverage.starts_with("You changed advertising from ") && !coverage.contains('%'), "{coverage}");
     let lines = crate::cost_review::income_and_cost_lines(&seen);
     assert!(lines.iter().any(|line| line.contains("without the effect of the changed ads")), "{lines:?}");

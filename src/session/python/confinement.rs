@@ -13,7 +13,7 @@ pub type ScriptRestriction = fn(&Path) -> Result<()>;
 
 static RESTRICTION: OnceLock<ScriptRestriction> = OnceLock::new();
 
-/// Restricts every script that this process starts from now on. A script that cannot be restricted is not started.
+/// Restricts every script that this process starts later. A script that cannot be restricted is not started.
 /// Later calls have no effect.
 pub fn restrict_scripts(restriction: ScriptRestriction) {
     let _ = RESTRICTION.set(restriction);

@@ -150,11 +150,11 @@ impl Observation {
     /// Describes how often ranges of naive forecasts contained the actual cash of companies like this one. Returns
     /// `None` if too few companies were measured or the ranges contained too few outcomes. After a large change of the
     /// advertising budget, describes what the ranges leave out, because the measured coverage does not apply.
-    pub fn describe_coverage(&self) -> Option<String> {
+    pub fn describe_ranges(&self) -> Option<String> {
         if let Some(change) = self.outlook.advertising_change {
             return Some(format!(
                 "You changed advertising from {} to {} a day. The naive forecasts include its cost, but not the signups it \
-                 adds or removes, so the ranges are too narrow",
+                 adds or removes, so the ranges can be too narrow",
                 dollars(change.before.round()),
                 dollars(change.now.round())
             ));

@@ -71,7 +71,7 @@ impl NextWeekDialog {
         let mut lines: Vec<(String, Role)> =
             wrap(&text, width).into_iter().map(|line| (line, Role::Dim)).collect();
         if filled && roomy && !context.company.is_baseline() {
-            let coverage = context.company.observation.describe_coverage().unwrap_or_default();
+            let coverage = context.company.observation.describe_ranges().unwrap_or_default();
             lines.extend(wrap(&coverage, width).into_iter().map(|line| (line, Role::Dim)));
         }
         lines

@@ -114,7 +114,7 @@ struct FitLine {
     role: Role,
 }
 
-/// The participation curve of the group, as far as it has arrived.
+/// The state of the participation curve of the group.
 struct CurveState<'a> {
     curve: Option<&'a Result<CurveExplorer, Rejection>>,
     /// Whether a missing curve will arrive.

@@ -1,21 +1,18 @@
 //! The user's editor: the program that `VISUAL` or `EDITOR` names edits a text in a private file while the console
 //! leaves the terminal.
 
-use std::fs::{self, OpenOptions};
+use std::fs;
 use std::io::{self, Write};
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
 use std::sync::mpsc::Sender;
 
 use super::Console;
 use crate::context::EditorDocument;
+use novamind_record::files::create_private_file;
 use novamind_tui::terminal::TerminalSettings;
 use novamind_tui::widgets::editor::MAX_BYTES;
 use novamind_worker::message::Message;
-
-/// File mode: only the user can read and write the file.
-const PRIVATE_MODE: u32 = 0o600;
 
 /// A running external editor that occupies the terminal.
 pub struct OpenEditor {
@@ -37,7 +34,7 @@ impl Console {
 
     fn start_editor(&mut self, document: EditorDocument) -> Result<(), String> {
         let command = editor_command()?;
-        let path = create_private_file(&document).map_err(|error| {
+        let path = write_document(&document).map_err(|error| {
             format!("The file for your editor cannot be written: {error}. The draft is unchanged.")
         })?;
         // The signal for a new window size interrupts the thread that waits for a key.
@@ -94,14 +91,14 @@ fn editor_command() -> Result<String, String> {
 ///
 /// # Errors
 /// The file cannot be written.
-fn create_private_file(document: &EditorDocument) -> io::Result<PathBuf> {
+fn write_document(document: &EditorDocument) -> io::Result<PathBuf> {
     let folder = std::env::temp_dir();
     let mut number = 0;
     loop {
         let name = format!("novamind-{}-{number}.{}", std::process::id(), document.extension);
         let path = folder.join(name);
         // An existing file or link is never opened.
-        match OpenOptions::new().write(true).create_new(true).mode(PRIVATE_MODE).open(&path) {
+        match create_private_file(&path) {
             Ok(mut file) => {
                 let end = if document.text.is_empty() || document.text.ends_with('\n') { "" } else { "\n" };
                 file.write_all(document.text.as_bytes()).and_then(|()| file.write_all(end.as_bytes()))?;
@@ -176,7 +173,7 @@ mod tests {
     }
 
     fn result_of(command: &str, text: &str) -> (Result<String, String>, PathBuf) {
-        let path = create_private_file(&document(text)).expect("a file");
+        let path = write_document(&document(text)).expect("a file");
         let child = spawn_editor(command, &path).expect("a shell");
         let (sender, messages) = channel();
         wait_in_background(child, path.clone(), text.to_owned(), sender);
@@ -186,11 +183,11 @@ mod tests {
 
     #[test]
     fn file_is_private_and_never_replaces_a_file() {
-        let (first, second) = (create_private_file(&document("a")), create_private_file(&document("b")));
+        let (first, second) = (write_document(&document("a")), write_document(&document("b")));
         let (first, second) = (first.expect("a file"), second.expect("a file"));
         assert_ne!(first, second);
         let mode = fs::metadata(&first).expect("metadata").permissions().mode();
-        assert_eq!(mode & 0o777, PRIVATE_MODE);
+        assert_eq!(mode & 0o777, 0o600);
         assert_eq!(fs::read_to_string(&first).expect("text"), "a\n");
         [first, second].iter().for_each(|path| fs::remove_file(path).expect("a file"));
     }

@@ -6,10 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
-use novamind_record::files::write_private_atomically;
+use novamind_record::files::{read_if_exists, write_private_atomically};
 use novamind_study::CodeDigest;
-
-use crate::folder::read_if_exists;
 
 /// Name of the file with the digests of tokens and codes.
 const ACCESS_FILE: &str = "access.json";
@@ -86,9 +84,9 @@ impl Access {
         let mut entries = self.read()?;
         let mut issued = Vec::new();
         for label in labels {
-            let token = to_hexadecimal(&random_bytes::<16>()?);
+            let token = random_text::<16>()?;
             let code = random_code()?;
-            let salt = to_hexadecimal(&random_bytes::<8>()?);
+            let salt = random_text::<8>()?;
             let entry =
                 AccessEntry { token: token_digest(&token), code: CodeDigest::from_code(&code, &salt) };
             entries.insert(label.clone(), entry);
@@ -107,7 +105,7 @@ impl Access {
 }
 
 fn token_digest(token: &str) -> String {
-    to_hexadecimal(&blake3::derive_key("novamind link token", token.as_bytes()))
+    blake3::Hash::from_bytes(blake3::derive_key("novamind link token", token.as_bytes())).to_hex().to_string()
 }
 
 /// Returns a code of two parts. It has 49 random bits.
@@ -132,8 +130,12 @@ fn random_bytes<const COUNT: usize>() -> Result<[u8; COUNT], RunError> {
     Ok(bytes)
 }
 
-fn to_hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+/// Returns random bytes as hexadecimal digits.
+///
+/// # Errors
+/// The system provides no random numbers.
+pub(crate) fn random_text<const BYTES: usize>() -> Result<String, RunError> {
+    Ok(random_bytes::<BYTES>()?.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
 #[cfg(test)]

@@ -5,13 +5,14 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use std::time::Duration;
 
-use rustix::termios::{OptionalActions, Termios, isatty, tcgetattr, tcgetwinsize, tcsetattr};
+use rustix::termios::{LocalModes, OptionalActions, Termios, isatty, tcgetattr, tcgetwinsize, tcsetattr};
 use tokio::net::UnixStream;
 use tokio::net::unix::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 
+use crate::attachment::WindowSize;
 use crate::frames::{ClientMessage, HostMessage, receive, send};
 
 /// Sequences that start with a blank alternate screen.
@@ -21,10 +22,6 @@ const LEAVE_SCREEN: &str = "\x1b[?1000l\x1b[?1002l\x1b[?1003l\x1b[?1006l\x1b[?10
                             \x1b[<u\x1b>\x1b[r\x1b[0m\x1b[0 q\x1b[?7h\x1b[?25h\x1b[?1049l";
 /// Time for which a message of the host is shown.
 const NOTICE_TIME: Duration = Duration::from_secs(12);
-/// Smallest window of a session: columns and rows.
-const SMALLEST_WINDOW: (u16, u16) = (60, 16);
-/// Largest number of rows of a session.
-const LARGEST_ROWS: u16 = 60;
 
 /// The reason why a terminal is not or no longer attached.
 #[derive(Debug)]
@@ -173,7 +170,7 @@ impl View {
     fn draw_notice(&self) -> io::Result<()> {
         let Some((text, _)) = &self.notice else { return Ok(()) };
         let (columns, rows) = window_size();
-        let (width, row) = (usize::from(columns).saturating_sub(2), rows.min(LARGEST_ROWS));
+        let (width, row) = (usize::from(columns).saturating_sub(2), rows.min(WindowSize::LARGEST.rows));
         let text: String = text.chars().filter(|letter| !letter.is_control()).take(width).collect();
         write_out(format!("\x1b7\x1b[{row};1H\x1b[0;7m {text:<width$} \x1b[0m\x1b8").as_bytes())
     }
@@ -188,12 +185,13 @@ impl View {
     /// Clears the screen, and asks for a larger window if the window is too small.
     fn check_size(&mut self) -> io::Result<()> {
         let (columns, rows) = window_size();
-        self.is_too_small = columns < SMALLEST_WINDOW.0 || rows < SMALLEST_WINDOW.1;
+        let least = WindowSize::SMALLEST;
+        self.is_too_small = columns < least.columns || rows < least.rows;
         write_out(b"\x1b[0m\x1b[2J\x1b[H")?;
         if !self.is_too_small {
             return Ok(());
         }
-        let (least_columns, least_rows) = SMALLEST_WINDOW;
+        let WindowSize { columns: least_columns, rows: least_rows } = least;
         write_out(
             format!("Enlarge the window to {least_columns} x {least_rows} (now {columns} x {rows}).")
                 .as_bytes(),
@@ -201,18 +199,36 @@ impl View {
     }
 }
 
-/// The terminal without line editing. Dropping it restores the terminal.
-struct RawTerminal {
+/// Changed modes of the terminal. Dropping the value restores the modes.
+struct ChangedModes {
     original: Termios,
+}
+
+impl ChangedModes {
+    fn start(change: impl FnOnce(&mut Termios)) -> io::Result<ChangedModes> {
+        let original = tcgetattr(io::stdin())?;
+        let mut changed = original.clone();
+        change(&mut changed);
+        tcsetattr(io::stdin(), OptionalActions::Flush, &changed)?;
+        Ok(ChangedModes { original })
+    }
+}
+
+impl Drop for ChangedModes {
+    fn drop(&mut self) {
+        // The terminal may have gone.
+        let _ = tcsetattr(io::stdin(), OptionalActions::Flush, &self.original);
+    }
+}
+
+/// The terminal without line editing, showing the screen of the session. Dropping the value restores the terminal.
+struct RawTerminal {
+    _modes: ChangedModes,
 }
 
 impl RawTerminal {
     fn enter() -> io::Result<RawTerminal> {
-        let original = tcgetattr(io::stdin())?;
-        let mut raw = original.clone();
-        raw.make_raw();
-        tcsetattr(io::stdin(), OptionalActions::Flush, &raw)?;
-        let terminal = RawTerminal { original };
+        let terminal = RawTerminal { _modes: ChangedModes::start(Termios::make_raw)? };
         write_out(ENTER_SCREEN.as_bytes())?;
         Ok(terminal)
     }
@@ -222,7 +238,6 @@ impl Drop for RawTerminal {
     fn drop(&mut self) {
         // The terminal may have gone.
         let _ = write_out(LEAVE_SCREEN.as_bytes());
-        let _ = tcsetattr(io::stdin(), OptionalActions::Flush, &self.original);
     }
 }
 
@@ -270,30 +285,9 @@ fn ask_for_code() -> io::Result<(String, String)> {
         }
     };
     let label = ask("Label: ")?;
-    let hidden = HiddenInput::start()?;
+    let hidden = ChangedModes::start(|modes| modes.local_modes.remove(LocalModes::ECHO))?;
     let code = ask("Code (not shown): ");
     drop(hidden);
     write_out(b"\n")?;
     Ok((label, code?))
-}
-
-/// The terminal without echo. Dropping it restores the terminal.
-struct HiddenInput {
-    original: Termios,
-}
-
-impl HiddenInput {
-    fn start() -> io::Result<HiddenInput> {
-        let original = tcgetattr(io::stdin())?;
-        let mut hidden = original.clone();
-        hidden.local_modes.remove(rustix::termios::LocalModes::ECHO);
-        tcsetattr(io::stdin(), OptionalActions::Flush, &hidden)?;
-        Ok(HiddenInput { original })
-    }
-}
-
-impl Drop for HiddenInput {
-    fn drop(&mut self) {
-        let _ = tcsetattr(io::stdin(), OptionalActions::Flush, &self.original);
-    }
 }

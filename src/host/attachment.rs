@@ -18,9 +18,18 @@ pub struct WindowSize {
 }
 
 impl WindowSize {
+    /// Smallest window of a session.
+    pub const SMALLEST: WindowSize = WindowSize { columns: 60, rows: 16 };
+    /// Largest window of a session.
+    pub const LARGEST: WindowSize = WindowSize { columns: 200, rows: 60 };
+
     /// Returns the size that is nearest to the given one and within the limits.
     pub fn clamped(columns: u16, rows: u16) -> WindowSize {
-        WindowSize { columns: columns.clamp(60, 200), rows: rows.clamp(16, 60) }
+        let (smallest, largest) = (WindowSize::SMALLEST, WindowSize::LARGEST);
+        WindowSize {
+            columns: columns.clamp(smallest.columns, largest.columns),
+            rows: rows.clamp(smallest.rows, largest.rows),
+        }
     }
 }
 

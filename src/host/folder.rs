@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
-use novamind_record::files::write_private_atomically;
+use novamind_record::files::{read_if_exists, write_private_atomically};
 use novamind_record::folder::configuration::CONSENT_FILE;
 use novamind_study::{
     ASSIGNMENT_FILE, Assignment, AssignmentRow, CodeDigest, SEAL_KEY_FILE, STUDY_FILE, Study,
@@ -31,8 +31,7 @@ pub struct HostFolder {
     path: PathBuf,
     study: Study,
     rows: Vec<AssignmentRow>,
-    url: Option<String>,
-    admin_code: Option<CodeDigest>,
+    description: HostDescription,
     /// Function that reports failures of the audit log to the experimenter.
     report: fn(&str),
 }
@@ -78,11 +77,16 @@ impl HostFolder {
             ))
         })?;
         let path = study.folder.join(HOST_FOLDER);
-        let mut folder =
-            HostFolder { path, study, rows: assignment.rows, url: None, admin_code: None, report: |_| {} };
-        create_private_folder(&folder.path)?;
-        create_private_folder(&folder.path.join(SESSIONS_FOLDER))?;
-        folder.check_description(program)?;
+        create_private_folder(&path)?;
+        create_private_folder(&path.join(SESSIONS_FOLDER))?;
+        let description = HostDescription {
+            program: program.clone(),
+            study: study.digest.clone(),
+            url: None,
+            admin_code: None,
+        };
+        let mut folder = HostFolder { path, study, rows: assignment.rows, description, report: |_| {} };
+        folder.check_description()?;
         folder.rows.iter().try_for_each(|row| folder.prepare_session(row))?;
         Ok(folder)
     }
@@ -112,59 +116,53 @@ impl HostFolder {
         self.session_folder(label).join("runs")
     }
 
-    /// Compares `host.toml` with the program and the study. Writes the file if no session has started.
-    fn check_description(&mut self, program: &ProgramVersion) -> Result<(), RunError> {
+    /// Compares `host.toml` with the program and the study, and reads its settings. Writes the file if no session has
+    /// started.
+    fn check_description(&mut self) -> Result<(), RunError> {
         let path = self.path.join(HOST_FILE);
-        let mut current = HostDescription {
-            program: program.clone(),
-            study: self.study.digest.clone(),
-            url: None,
-            admin_code: None,
-        };
         if let Some(text) = read_if_exists(&path)? {
             let text = String::from_utf8_lossy(&text);
             let found: HostDescription =
                 toml::from_str(&text).map_err(|error| invalid(format!("{}: {error}", path.display())))?;
-            (self.url, self.admin_code) = (found.url.clone(), found.admin_code.clone());
-            (current.url, current.admin_code) = (found.url.clone(), found.admin_code.clone());
-            if found == current {
+            self.description.url.clone_from(&found.url);
+            self.description.admin_code.clone_from(&found.admin_code);
+            if found == self.description {
                 return Ok(());
             }
             if self.has_started_sessions() {
-                return Err(invalid(describe_difference(&found, &current, &path)));
+                return Err(invalid(describe_difference(&found, &self.description, &path)));
             }
         }
-        write_description(&path, &current)
+        self.write_description()
+    }
+
+    fn write_description(&self) -> Result<(), RunError> {
+        let text = toml::to_string(&self.description).map_err(|error| invalid(error.to_string()))?;
+        write_private_atomically(&self.path.join(HOST_FILE), text.as_bytes())
     }
 
     /// Saves the address in links or the code of the experimenter's page. `None` keeps the saved value.
     ///
     /// # Errors
-    /// The file cannot be read or written.
+    /// The file cannot be written.
     pub fn save_settings(
         &mut self,
         url: Option<String>,
         admin_code: Option<CodeDigest>,
     ) -> Result<(), RunError> {
-        let path = self.path.join(HOST_FILE);
-        let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
-        let mut description: HostDescription =
-            toml::from_str(&text).map_err(|error| invalid(format!("{}: {error}", path.display())))?;
-        description.url = url.or(description.url);
-        description.admin_code = admin_code.or(description.admin_code);
-        write_description(&path, &description)?;
-        (self.url, self.admin_code) = (description.url, description.admin_code);
-        Ok(())
+        self.description.url = url.or(self.description.url.take());
+        self.description.admin_code = admin_code.or(self.description.admin_code.take());
+        self.write_description()
     }
 
     /// Returns the address of the host in links.
     pub fn url(&self) -> Option<&str> {
-        self.url.as_deref()
+        self.description.url.as_deref()
     }
 
     /// Returns the digest of the code for the experimenter's page, or `None` if there is no code.
     pub fn admin_code(&self) -> Option<&CodeDigest> {
-        self.admin_code.as_ref()
+        self.description.admin_code.as_ref()
     }
 
     /// Returns the access of the participants.
@@ -187,12 +185,9 @@ impl HostFolder {
         self.path.join("host.sock")
     }
 
-    /// Returns whether a session has written to its folder of runs.
     fn has_started_sessions(&self) -> bool {
         let sessions = std::fs::read_dir(self.path.join(SESSIONS_FOLDER)).into_iter().flatten().flatten();
-        sessions.into_iter().any(|session| {
-            std::fs::read_dir(session.path().join("runs")).is_ok_and(|mut files| files.next().is_some())
-        })
+        sessions.into_iter().any(|session| has_started(&session.path()))
     }
 
     /// Creates the folder of a session, with a copy of the study that contains only this participant's row.
@@ -202,7 +197,7 @@ impl HostFolder {
         let assignment = Assignment { rows: vec![row.clone()] }.to_csv();
         if let Some(existing) = read_if_exists(&copy.join(ASSIGNMENT_FILE))?
             && existing != assignment.as_bytes()
-            && std::fs::read_dir(folder.join("runs")).is_ok_and(|mut files| files.next().is_some())
+            && has_started(&folder)
         {
             return Err(invalid(format!(
                 "the row of {} in {ASSIGNMENT_FILE} was changed after the session started: restore the row of {}",
@@ -226,9 +221,9 @@ impl HostFolder {
     }
 }
 
-fn write_description(path: &Path, description: &HostDescription) -> Result<(), RunError> {
-    let text = toml::to_string(description).map_err(|error| invalid(error.to_string()))?;
-    write_private_atomically(path, text.as_bytes())
+/// Returns whether a session has written to its folder of runs.
+fn has_started(session: &Path) -> bool {
+    std::fs::read_dir(session.join("runs")).is_ok_and(|mut files| files.next().is_some())
 }
 
 fn describe_difference(found: &HostDescription, current: &HostDescription, path: &Path) -> String {
@@ -262,14 +257,6 @@ pub(crate) fn create_private_folder(path: &Path) -> Result<(), RunError> {
         DirBuilder::new().mode(0o700).create(path).map_err(RunError::io(path))?;
     }
     std::fs::set_permissions(path, Permissions::from_mode(0o700)).map_err(RunError::io(path))
-}
-
-pub(crate) fn read_if_exists(path: &Path) -> Result<Option<Vec<u8>>, RunError> {
-    match std::fs::read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(RunError::io(path)(error)),
-    }
 }
 
 fn copy_if_exists(from: &Path, to: &Path) -> Result<(), RunError> {

@@ -9,12 +9,12 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
-use novamind_record::files::write_private_atomically;
+use novamind_record::files::{read_if_exists, write_private_atomically};
 
 use crate::access::Access;
 use crate::attachment::{AttachError, Attachment, ClientKind, CloseReason, Notice, WindowSize};
 use crate::audit::{AuditEvent, AuditLog};
-use crate::folder::{HostFolder, read_if_exists};
+use crate::folder::HostFolder;
 use crate::process::SessionProgram;
 use crate::session::HostedSession;
 

@@ -25,18 +25,38 @@ pub fn write_private_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunErro
     replace_with_draft(path, bytes, |draft| {
         // The draft of a crashed process can have other permissions.
         let _ = std::fs::remove_file(draft);
-        let mut options = OpenOptions::new();
-        options.write(true).create_new(true);
-        #[cfg(unix)]
-        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-        options.open(draft)
+        create_private_file(draft)
     })
+}
+
+/// Creates a file. On Unix, only its owner can read the file.
+///
+/// # Errors
+/// The file exists or cannot be created.
+pub fn create_private_file(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(path)
+}
+
+/// Reads a file. Returns `None` if the file does not exist.
+///
+/// # Errors
+/// The file exists but cannot be read.
+pub fn read_if_exists(path: &Path) -> Result<Option<Vec<u8>>, RunError> {
+    match std::fs::read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(RunError::io(path)(error)),
+    }
 }
 
 fn replace_with_draft(
     path: &Path,
     bytes: &[u8],
-    create: impl FnOnce(&Path) -> std::io::Result<File>,
+    create: impl FnOnce(&Path) -> io::Result<File>,
 ) -> Result<(), RunError> {
     let draft = path.with_extension("draft");
     let written = create(&draft)

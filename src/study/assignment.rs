@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use novamind_record::error::RunError;
+use novamind_record::files::read_if_exists;
 use novamind_record::folder::runs::participant_folder;
 use novamind_world::params::ParameterError;
 
@@ -40,11 +41,8 @@ impl Assignment {
     /// Returns an error that names the line if a line is invalid or a label occurs twice.
     pub fn read(folder: &Path) -> Result<Option<Assignment>, RunError> {
         let path = folder.join(ASSIGNMENT_FILE);
-        match std::fs::read(&path) {
-            Ok(bytes) => Ok(Some(Assignment::parse(&path.display().to_string(), &bytes)?)),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(RunError::Io { path, error }),
-        }
+        let parse = |bytes: Vec<u8>| Assignment::parse(&path.display().to_string(), &bytes);
+        Ok(read_if_exists(&path)?.map(parse).transpose()?)
     }
 
     /// Parses the contents of `assignment.csv`. `source` is the name of the file in error messages.

@@ -1,9 +1,7 @@
 //! `novamind host links`: creates links and codes of participants.
 
 use std::collections::BTreeSet;
-use std::fs::OpenOptions;
 use std::io::Write;
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -12,6 +10,7 @@ use super::open_folder;
 use crate::cli::{Failure, print};
 use crate::host::AuditEvent;
 use crate::record::error::RunError;
+use crate::record::files::create_private_file;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -58,10 +57,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     // The file is created first: if it cannot be written, earlier links stay valid.
     let file = &options.csv;
-    let mut out =
-        OpenOptions::new().write(true).create_new(true).mode(0o600).open(file).map_err(|error| {
-            Failure::failed(format!("{}: {error}; no links were created", file.display()))
-        })?;
+    let mut out = create_private_file(file)
+        .map_err(|error| Failure::failed(format!("{}: {error}; no links were created", file.display())))?;
     let issued = folder.access().issue(&labels)?;
     let mut text = "label,link,code\n".to_owned();
     for one in &issued {

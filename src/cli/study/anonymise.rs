@@ -1,6 +1,5 @@
 //! `novamind study anonymize`: writes the tables of a study without data that identifies participants.
 
-use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -8,6 +7,7 @@ use clap::Args;
 
 use crate::cli::runs::to_csv;
 use crate::cli::{Failure, print};
+use crate::record::files::create_private_file;
 use crate::report::anonymization::{AnonymizedTables, Anonymizer, LINK_COLUMNS, NamedTable, TextHandling};
 use crate::report::pluralize;
 use crate::report::tables::table_headings;
@@ -124,13 +124,4 @@ fn read_or_create_secret(path: &Path) -> Result<[u8; 32], Failure> {
         }
         Err(error) => Err(failed(error)),
     }
-}
-
-/// Creates a file that only its owner can read.
-fn create_private_file(path: &Path) -> std::io::Result<File> {
-    let mut options = File::options();
-    options.write(true).create_new(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    options.open(path)
 }

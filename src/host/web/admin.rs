@@ -13,12 +13,14 @@ use axum::routing::{get, post};
 use axum::{Extension, Router};
 use serde::Deserialize;
 
+use super::WebHost;
 use super::admin_page;
 use super::attempt_limit::AttemptLimit;
 use super::pages::message_page;
 use super::request_guard::{ADMIN_COOKIE, CheckedRequest, cookie, set_cookie};
-use super::{WebHost, random_text};
+use crate::access::random_text;
 use crate::audit::AuditEvent;
+use novamind_record::error::RunError;
 use novamind_study::session_statuses;
 
 /// Time without a request after which the experimenter has to enter the code again.
@@ -60,8 +62,8 @@ impl AdminAccess {
     }
 
     /// Signs a browser in. Returns the value of its cookie.
-    fn sign_in(&self) -> Result<String, getrandom::Error> {
-        let (value, form_token) = (random_text()?, random_text()?);
+    fn sign_in(&self) -> Result<String, RunError> {
+        let (value, form_token) = (random_text::<16>()?, random_text::<16>()?);
         let mut browsers = self.lock();
         if browsers.len() >= MAX_SIGNED_IN {
             let oldest = browsers.iter().min_by_key(|(_, browser)| browser.last_request);
@@ -84,7 +86,7 @@ impl AdminAccess {
     }
 }
 
-/// Looking up a digest takes the same time whatever part of the value is right.
+/// Digests are looked up, because the time of a lookup does not depend on how much of the value is right.
 fn cookie_digest(value: &str) -> String {
     blake3::hash(value.as_bytes()).to_hex().to_string()
 }
@@ -102,7 +104,7 @@ async fn overview(State(host): State<WebHost>, head: HeaderMap) -> Response {
     let Some(form_token) = host.admin().form_token(&head) else {
         return sign_in_page(&host, None);
     };
-    let rows = session_rows(&host).await;
+    let rows = session_rows(&host, None).await;
     admin_page::overview(&host.sessions().folder().study().protocol.name, &rows, &form_token).into_response()
 }
 
@@ -198,7 +200,7 @@ async fn show_session(
     form_token: &str,
     outcome: Option<Result<&str, String>>,
 ) -> Response {
-    let Some(row) = session_rows(host).await.into_iter().find(|row| row.label == label) else {
+    let Some(row) = session_rows(host, Some(label)).await.pop() else {
         let page = message_page("Unknown label", "This label is not in the study.");
         return (StatusCode::NOT_FOUND, page).into_response();
     };
@@ -312,12 +314,14 @@ pub(super) struct RunProgress {
     pub problems: Vec<String>,
 }
 
-/// Returns the rows of the table. Reads the last lines of all records.
-async fn session_rows(host: &WebHost) -> Vec<SessionRow> {
-    let sessions = host.sessions().clone();
+/// Returns the rows of the table, or only the row of one label. Reads the last lines of the records.
+async fn session_rows(host: &WebHost, label: Option<&str>) -> Vec<SessionRow> {
+    let (sessions, label) = (host.sessions().clone(), label.map(str::to_owned));
     let read = move || {
         let folder = sessions.folder();
-        let rows = sessions.statuses().into_iter().map(|status| SessionRow {
+        let mut statuses = sessions.statuses();
+        statuses.retain(|status| label.as_ref().is_none_or(|label| *label == status.label));
+        let rows = statuses.into_iter().map(|status| SessionRow {
             run: latest_run(folder.study(), &folder.runs_folder(&status.label)),
             label: status.label,
             client: status.client.map(|client| client.to_string()),

@@ -195,10 +195,3 @@ async fn open_socket(
         .max_frame_size(socket::MAX_MESSAGE_BYTES)
         .on_upgrade(move |socket| socket::serve_page(socket, host, label, address))
 }
-
-/// Returns 128 random bits as text.
-fn random_text() -> Result<String, getrandom::Error> {
-    let mut bytes = [0u8; 16];
-    getrandom::fill(&mut bytes)?;
-    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
-}

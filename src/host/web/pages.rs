@@ -10,6 +10,7 @@ use axum::response::{Html, IntoResponse, Response};
 
 use super::WebHost;
 use super::request_guard::{CheckedRequest, PARTICIPANT_COOKIE, cookie, set_cookie};
+use crate::access::random_text;
 use crate::audit::AuditEvent;
 
 /// Answers a link with a token: stores the token in a cookie and opens the terminal, so that the token leaves the address.
@@ -58,7 +59,7 @@ pub(super) async fn terminal_page(
     let Some(label) = host.sessions().label_for_token(token) else {
         return (StatusCode::FORBIDDEN, unknown_link()).into_response();
     };
-    let Ok(nonce) = super::random_text() else {
+    let Ok(nonce) = random_text::<16>() else {
         return StatusCode::INTERNAL_SERVER_ERROR.into_response();
     };
     let head = r#"<link rel="stylesheet" href="/assets/xterm.css">"#;

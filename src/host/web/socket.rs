@@ -43,7 +43,7 @@ struct Hello {
     label: String,
     /// Identifier of the page, which it draws when it is loaded.
     client: String,
-    /// Whether the page reconnects by itself, not because the participant opened it.
+    /// Whether the page reconnects automatically, not because the participant opened it.
     resume: bool,
     columns: u16,
     rows: u16,
@@ -60,7 +60,7 @@ enum HostMessage {
     Acknowledged { number: u64 },
     /// A text to be shown above the terminal.
     Notice { text: String },
-    /// The page is detached and must not reconnect by itself, except after `paused` and `shutdown`.
+    /// The page is detached and must not reconnect automatically, except after `paused` and `shutdown`.
     Closed { reason: &'static str, text: String },
     /// The connection exists.
     Alive,

@@ -83,19 +83,6 @@ pub fn new_token() -> Result<String, RunError> {
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// Creates a file that only its owner can read.
-///
-/// # Errors
-/// The file exists or cannot be written.
-pub fn write_private_file(path: &Path, text: &str) -> io::Result<()> {
-    use std::io::Write;
-    let mut options = std::fs::OpenOptions::new();
-    options.write(true).create_new(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    writeln!(options.open(path)?, "{text}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

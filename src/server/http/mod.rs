@@ -6,7 +6,7 @@ mod release_2;
 mod routes;
 mod shutdown;
 
-use std::io;
+use std::io::{self, Write};
 use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,6 +26,7 @@ pub(super) use guard::new_token;
 
 use guard::RequestGuard;
 use novamind_record::error::RunError;
+use novamind_record::files::create_private_file;
 use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
 use routes::ServedRun;
@@ -133,7 +134,7 @@ fn read_or_create_token(path: &Path) -> Result<String, RunError> {
         Ok(_) => Err(failed(io::Error::new(io::ErrorKind::InvalidData, "the token file is empty"))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let token = guard::new_token()?;
-            guard::write_private_file(path, &token).map_err(failed)?;
+            create_private_file(path).and_then(|mut file| writeln!(file, "{token}")).map_err(failed)?;
             Ok(token)
         }
         Err(error) => Err(failed(error)),

@@ -1,7 +1,7 @@
 //! Signing keys of a laboratory. A valid signature proves that the owner of the key signed the archive and that the
 //! archive is unchanged (docs/formats/archive.md#signature).
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use ed25519_dalek::{Signature, Signer, SigningKey, VerifyingKey};
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
-use novamind_record::files::{parent_folder, sync_folder};
+use novamind_record::files::{create_private_file, parent_folder, sync_folder};
 
 const PRIVATE_KEY_TITLE: &str = "novamind lab key 1: keep it secret, and keep a copy";
 const PUBLIC_KEY_TITLE: &str = "novamind lab public key 1";
@@ -144,12 +144,8 @@ pub fn write_seal_key(secret: &[u8; 32], file: &Path) -> Result<(), RunError> {
 }
 
 fn write_secret_file(file: &Path, text: &str) -> Result<(), RunError> {
-    let mut options = OpenOptions::new();
-    options.write(true).create_new(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    let written =
-        options.open(file).and_then(|mut out| out.write_all(text.as_bytes()).and_then(|()| out.sync_all()));
+    let written = create_private_file(file)
+        .and_then(|mut out| out.write_all(text.as_bytes()).and_then(|()| out.sync_all()));
     written.map_err(RunError::io(file))?;
     sync_folder(parent_folder(file))
 }

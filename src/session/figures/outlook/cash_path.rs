@@ -181,7 +181,7 @@ impl Trend {
 }
 
 /// Returns the mean amount of a ledger category per day, as a positive number of dollars.
-fn daily_amount(weeks: &[WeekFigures], category: Category) -> f64 {
+pub(super) fn daily_amount(weeks: &[WeekFigures], category: Category) -> f64 {
     let days: u32 = weeks.iter().map(|week| week.days_run).sum();
     weeks.iter().map(|week| week.booked.category_total(category)).sum::<f64>().abs() / f64::from(days.max(1))
 }

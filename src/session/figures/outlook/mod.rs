@@ -14,7 +14,7 @@ pub use billing_calendar::BillingCalendar;
 pub use error_intervals::{ErrorIntervals, ForecastError, Level, StageInterval};
 pub use growth_stage::GrowthStage;
 
-use self::cash_path::CashPath;
+use self::cash_path::{CashPath, daily_amount};
 use super::week::Forecasts;
 
 /// Last day of the runway, counted from today. Ranges were not measured for longer horizons.
@@ -56,8 +56,7 @@ impl AdvertisingChange {
     const MIN_RATIO: f64 = 1.25;
 
     fn since(weeks: &[WeekFigures], now: f64) -> Option<AdvertisingChange> {
-        let week = weeks.last()?;
-        let before = -week.booked.category_total(Category::Advertising) / f64::from(week.days_run.max(1));
+        let before = daily_amount(&[*weeks.last()?], Category::Advertising);
         let is_large = now.max(before) > AdvertisingChange::MIN_RATIO * now.min(before);
         is_large.then_some(AdvertisingChange { before, now })
     }
